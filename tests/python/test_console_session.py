@@ -13,8 +13,8 @@ from stillspin.drive.requester import wait_until
 from stillspin.exit_codes import ExitCode
 
 PATIENCE = 15.0
-DRAWS = "\x1b[?7l"
-"""The line editor draws, so keys are its own; until then the terminal takes a Ctrl-D for itself."""
+DRAWS = "\x1b[?2004h"
+"""The line editor begins a line, so keys are its own; until then the terminal takes a Ctrl-D for itself."""
 READY, RUN, STOP = 2, 4, 5
 
 
@@ -62,6 +62,17 @@ class Person:
 
     def type(self, keys):
         os.write(self._master, keys.encode())
+
+    def enters(self, line):
+        """Types a line and waits until the editor begins the next one."""
+        before = self.seen.count(DRAWS)
+        self.type(line + "\r")
+
+        def begins():
+            self._look()
+            return self.seen.count(DRAWS) > before
+
+        assert wait_until(begins, PATIENCE), self.seen
 
     def goes(self):
         def gone():
@@ -143,7 +154,7 @@ def test_a_motor_of_somebody_else_is_left_alone(ask, fake):
 
 def test_a_session_that_ends_leaves_a_motor_alone_that_another_has_started_since(sit_down, fake):
     person = sit_down()
-    person.type("start\r")
+    person.enters("start")
     assert runs(fake)
     assert person.sees("heard start"), person.seen
     fake.start(4711)
@@ -154,7 +165,7 @@ def test_a_session_that_ends_leaves_a_motor_alone_that_another_has_started_since
 
 def test_a_session_keeps_the_guard_alive(sit_down, fake):
     person = sit_down()
-    person.type("start\r")
+    person.enters("start")
     assert runs(fake)
     time.sleep(6.0)
     assert fake.state == RUN
@@ -165,7 +176,7 @@ def test_a_session_keeps_the_guard_alive(sit_down, fake):
 
 def test_ctrl_c_goes_to_the_drive_and_a_second_one_asks(sit_down, fake):
     person = sit_down()
-    person.type("start\r")
+    person.enters("start")
     assert runs(fake)
     before = fake.interrupts
     person.type("\x03")
@@ -187,7 +198,7 @@ def test_ctrl_c_goes_to_the_drive_and_a_second_one_asks(sit_down, fake):
 
 def test_the_answer_may_be_to_keep_it_running(sit_down, fake):
     person = sit_down()
-    person.type("start\r")
+    person.enters("start")
     assert runs(fake)
     person.type("\x03\x03")
     assert person.sees("leave and stop the motor?"), person.seen
@@ -199,7 +210,7 @@ def test_the_answer_may_be_to_keep_it_running(sit_down, fake):
 
 def test_who_leaves_a_motor_that_runs_free_is_told(sit_down, fake):
     person = sit_down()
-    person.type("start free\r")
+    person.enters("start free")
     assert runs(fake)
     person.type("\x04")
     assert person.goes()
@@ -222,7 +233,7 @@ def test_who_leaves_is_told_what_is_not_saved(sit_down, fake):
 @pytest.mark.parametrize("way", ["\x04", "exit\r", signal.SIGTERM, signal.SIGHUP, None])
 def test_every_way_out_stops_the_motor(sit_down, fake, way):
     person = sit_down()
-    person.type("start\r")
+    person.enters("start")
     assert runs(fake)
     if way is None:
         person.hang_up()

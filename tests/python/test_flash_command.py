@@ -103,7 +103,7 @@ def test_an_update_that_is_broken_off_says_what_is_on_the_chip_and_what_to_do(fi
             broken.setattr(Kernel, "write", fails)
             ended, _, complaint = flash(image, *kernel, "--port", port)
         again = f"stillspin flash {image} --kernel {kernel[1]} --port {port}"
-        assert (ended, complaint.count("\n")) == (status, 1)
+        assert (ended, complaint.count("\n")) == (status, 1), complaint
         assert "no complete image is on the chip: it stays in its boot code and runs no drive" in complaint
         assert f"leave the jumpers in serial boot, reset the board, then: {again}\n" in complaint
         assert flash(*again.split()[2:])[0] == 0

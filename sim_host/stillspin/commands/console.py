@@ -129,16 +129,15 @@ def _talk(drive: Drive, current: Session) -> None:
             while not drive.link.lost:
                 try:
                     line = terminal.prompt(bottom_toolbar=bar.text).strip()
+                    if line in _LEAVE:
+                        break
+                    transcript.expect(line)
+                    current.send(line)
                 except KeyboardInterrupt:
                     current.interrupt()
                     before, interrupted = interrupted, time.monotonic()
                     if interrupted - before < _TWICE and _wants_to_leave(current):
                         break
-                    continue
-                if line in _LEAVE:
-                    break
-                transcript.expect(line)
-                current.send(line)
         except EOFError:
             pass
         finally:

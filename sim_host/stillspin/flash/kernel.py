@@ -19,7 +19,7 @@ PROTOCOL = 1
 WORDS_MAX = 112
 """In one request to write."""
 _ATTEMPTS = 3
-_WAIT = 0.5
+_WAIT = 2.0
 _ERASE_WAIT = 60.0
 """Ten seconds a sector are typical, worn ones take longer."""
 _CHECK_WAIT = 5.0

@@ -18,9 +18,10 @@ RATE = 38400
 AHEAD = 16
 """Octets under way at most. The ROM has an octet's time for each, and needs a tenth of it."""
 _LETTER = b"A"
-_LETTER_WAIT = 1.0
+_LETTER_WAIT = 2.0
 """Seconds; a letter that is sent while the echo of the one before is under way is data for the ROM, a wrong key."""
-_ECHO_WAIT = 1.0
+_ECHO_WAIT = 5.0
+"""Seconds; an echo that is this late never comes, and a computer that is busy does other things first."""
 
 Progress = Callable[[int, int], None]
 """Octets done, octets in all."""

@@ -24,7 +24,7 @@ from stillspin.flash.line import Line, drop
 from stillspin.flash.program import Program
 from stillspin.link.errors import DifferentError, DriveError, NoAnswerError, RefusedError
 
-_LETTERS = 4
+_LETTERS = 3
 _START_WAIT = 0.1
 """Seconds from the ROM's jump until the kernel hears: the PLL locks in 7 ms."""
 _PROBES = 3
