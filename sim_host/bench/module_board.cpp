@@ -223,6 +223,7 @@ void bind_virtual_board(nb::module_& m) {
           "set_input", [](Self self, const std::string& name, double value) { self.board().set_input(name, value); },
           nb::arg("name"), nb::arg("value"))
       .def("outputs", [](Self self) { return dict_of(self.board().outputs()); })
+      .def("begin_run", [](Self self) { self.board().begin_run(); })
       .def("truth", [](Self self) { return dict_of(self.board().truth()); })
       .def("signals", [](Self self) { return self.board().executes() ? nb::dict() : dict_of(VirtualBoard::signals()); })
       .def("statistics", &statistics)

@@ -3,11 +3,13 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
 #include <map>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -135,15 +137,34 @@ std::vector<std::uint16_t> words(Self self, std::uint32_t address, std::uint32_t
   return all;
 }
 
-// Codes of the converter, and writes to the ePWM as (samples before it, address, value, address behind its
-// instruction).
+using Change = std::tuple<std::uint64_t, std::uint64_t, std::int64_t>;
+
+void tape(Self self, std::vector<std::uint16_t> given, const std::vector<std::vector<Change>>& inputs) {
+  chip::Tape& tape = self.board().tape();
+  if (inputs.size() > tape.inputs.size()) throw std::invalid_argument("a tape does not have so many inputs");
+  tape.given = std::move(given);
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    std::vector<chip::TapeInput::Change> changes;
+    for (const auto& [samples, looks, value] : inputs[k]) changes.push_back({samples, looks, value});
+    tape.inputs[k].give(std::move(changes));
+  }
+}
+
+// Codes of the converter, writes to the ePWM as (samples before it, address, value, address behind its instruction),
+// and of each other input its changes.
 nb::tuple taped(Self self) {
   const chip::Tape& tape = self.board().tape();
   nb::list writes;
   for (const auto& write : tape.writes) {
     writes.append(nb::make_tuple(write.samples, write.address, write.value, write.program));
   }
-  return nb::make_tuple(tape.samples, writes);
+  nb::list inputs;
+  for (const chip::TapeInput& input : tape.inputs) {
+    std::vector<Change> changes;
+    for (const auto& change : input.changes()) changes.emplace_back(change.samples, change.looks, change.value);
+    inputs.append(changes);
+  }
+  return nb::make_tuple(tape.samples, writes, inputs);
 }
 
 void replace_flash_library(Self self, std::uint32_t erase, std::uint32_t program, std::uint32_t verify,
@@ -176,9 +197,7 @@ void bind_code(nb::class_<PythonBoard>& board) {
       .def(
           "raise_interrupt", [](Self self, unsigned vector) { self.board().executing().raise_interrupt(vector); },
           nb::arg("vector"))
-      .def(
-          "tape", [](Self self, std::vector<std::uint16_t> given) { self.board().tape().given = std::move(given); },
-          nb::arg("given"))
+      .def("tape", &tape, nb::arg("given"), nb::arg("inputs") = std::vector<std::vector<Change>>())
       .def("taped", &taped)
       .def("replace_flash_library", &replace_flash_library, nb::arg("erase"), nb::arg("program"), nb::arg("verify"),
            nb::arg("scale"));

@@ -108,20 +108,26 @@ chip::Chip& VirtualBoard::executing() {
   return chip_;
 }
 
+void VirtualBoard::begin_run() {
+  if (first_run_ >= 0) return;
+  first_run_ = now();
+  board_.plant().advance(first_run_);
+  if (brake_until_run_) board_.plant().set_locked(locked_);
+}
+
 void VirtualBoard::on_period(Tick t) {
-  if (executes_) return;
+  if (!executes_) follow_drive();
+  const double since_start = first_run_ < 0 ? -1.0 : static_cast<double>(t - first_run_) * kSecondsPerTick;
+  faults_.step(since_start, static_cast<double>(t) * kSecondsPerTick, board_);
+}
+
+void VirtualBoard::follow_drive() {
   const drive_signals_t s = drive_signals();
   const std::uint64_t resets = chip_.statistics().resets;
   if (resets != resets_) told_ = false;
   resets_ = resets;
   if (!told_ && s.state == DRIVE_READY) tell_parameters();
-  if (first_run_ < 0 && s.state == DRIVE_RUN) {
-    first_run_ = t;
-    board_.plant().advance(t);
-    if (brake_until_run_) board_.plant().set_locked(locked_);
-  }
-  const double since_start = first_run_ < 0 ? -1.0 : static_cast<double>(t - first_run_) * kSecondsPerTick;
-  faults_.step(since_start, static_cast<double>(t) * kSecondsPerTick, board_);
+  if (s.state == DRIVE_RUN) begin_run();
 }
 
 void VirtualBoard::tell_parameters() {
@@ -177,7 +183,8 @@ std::vector<Quantity> VirtualBoard::truth() {
           {"i_d", "A", s.current_d},
           {"i_q", "A", s.current_q},
           {"electrical_angle", "rad", s.angle_e},
-          {"link_voltage", "V", s.link_voltage}};
+          {"link_voltage", "V", s.link_voltage},
+          {"load_angle", "rad", std::atan2(s.flux_q, s.flux_d)}};
 }
 
 std::vector<Quantity> VirtualBoard::signals() {

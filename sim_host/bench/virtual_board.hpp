@@ -80,6 +80,9 @@ class VirtualBoard final : private PeriodListener {
   // ---- shaft
   /// Load torque from now on, N m, -1e4..1e4; positive opposes positive rotation.
   void set_load(double torque);
+  /// The start procedure is over: a brake that holds until then lets go, and times of faults count from now. Of the
+  /// firmware the board sees it itself; of an image somebody has to say so. Again: nothing.
+  void begin_run();
   /// The true machine: angle and speed of the shaft, currents, torques, DC link.
   std::vector<Quantity> truth();
 
@@ -111,6 +114,7 @@ class VirtualBoard final : private PeriodListener {
   };
 
   void on_period(Tick t) override;
+  void follow_drive();
   void tell_parameters();
 
   FirmwareLease lease_;

@@ -201,7 +201,7 @@ std::uint16_t Core::bus_read(std::uint32_t address) {
       return timers_.read(offset_in_page(address), now_);
     case Device::kGpio:
       world_touched_ = true;
-      return gpio_.read(static_cast<std::uint16_t>(address - kGpioFrame), now_);
+      return read_gpio(static_cast<std::uint16_t>(address - kGpioFrame));
     case Device::kEQep1:
       return gate_stops(system_.eqep_clock(1), address) ? 0 : eqep1_.read(offset_in_page(address), now_);
     case Device::kSci:
@@ -313,6 +313,16 @@ void Core::bus_write(std::uint32_t address, std::uint16_t value) {
       write_memory(address, value);
       return;
   }
+}
+
+// What the chip drives itself is never another run's.
+std::uint16_t Core::read_gpio(std::uint16_t offset) {
+  const std::uint16_t seen = gpio_.read(offset, now_);
+  const int word = Gpio::level_word(offset);
+  if (tape_ == nullptr || word < 0) return seen;
+  const std::uint16_t own = gpio_.driven_here(word);
+  const std::int64_t from_outside = tape_->look(Tape::kPins + static_cast<unsigned>(word), seen & ~own);
+  return static_cast<std::uint16_t>((from_outside & ~own) | (seen & own));
 }
 
 void Core::write_epwm(std::uint32_t address, std::uint16_t value) {

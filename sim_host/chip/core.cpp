@@ -270,7 +270,8 @@ void Core::look_at_pins() {
 
 void Core::update_trips() {
   pins_dirty_ = false;
-  const unsigned active = gpio_.trips_routed() ? gpio_.active_trips(now_) : 0;
+  unsigned active = gpio_.trips_routed() ? gpio_.active_trips(now_) : 0;
+  if (tape_ != nullptr) active = static_cast<unsigned>(tape_->look(Tape::kTrips, active));
   if (active == trips_) return;
   trips_ = active;
   epwm_.set_trip_pins(active, now_);
@@ -355,6 +356,7 @@ void Core::i2c_pins(bool sda, bool scl, Tick t) {
 
 std::int64_t Core::encoder_edges(Tick t) {
   if (gpio_.encoder_routed()) encoder_held_ = world_.encoder_edges(t);
+  if (tape_ != nullptr) encoder_held_ = tape_->look(Tape::kEncoder, encoder_held_);
   return encoder_held_;
 }
 

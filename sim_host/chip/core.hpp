@@ -201,6 +201,7 @@ class Core final : public ChipServices {
   void write_adc(std::uint32_t address, std::uint16_t value);
   void write_eqep1(std::uint32_t address, std::uint16_t value);
   void write_sci(std::uint32_t address, std::uint16_t value);
+  std::uint16_t read_gpio(std::uint16_t offset);
   std::uint16_t read_sci(std::uint32_t address);
   void write_i2c(std::uint32_t address, std::uint16_t value);
   std::uint16_t read_i2c(std::uint32_t address);

@@ -61,6 +61,13 @@ void Gpio::reset(Tick t) {
 
 bool Gpio::is_protected(std::uint16_t offset) { return offset < kData || offset >= kDataEnd; }
 
+int Gpio::level_word(std::uint16_t offset) {
+  if (offset < kData || offset >= kDataEnd) return -1;
+  const int within = (offset - kData) % kPortSpan;
+  const int word = (offset - kData) / kPortSpan * 2 + within;
+  return within > 1 || 16 * word >= static_cast<int>(kPins) ? -1 : word;
+}
+
 unsigned Gpio::function(unsigned pin) const { return control_[mux_word(pin)] >> (pin % 8 * 2) & 3u; }
 
 bool Gpio::is_output(unsigned pin) const { return (control_[direction_word(pin)] >> pin % 16 & 1u) != 0; }

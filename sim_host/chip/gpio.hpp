@@ -29,6 +29,13 @@ class Gpio {
   /// Whether a register needs EALLOW: all but the data registers do.
   static bool is_protected(std::uint16_t offset);
 
+  /// Which of the words of levels is read there, from that of pins 0 to 15; -1 for another register.
+  static int level_word(std::uint16_t offset);
+  /// Its pins that the chip drives, as general purpose outputs or from the ePWM.
+  std::uint16_t driven_here(int word) const {
+    return static_cast<std::uint16_t>((outputs_ | pwm_routed_) >> 16 * word & 0xFFFFu);
+  }
+
   /// Output of an ePWM module (0..5), on its way to the pins GPIO2m and GPIO2m+1.
   void pwm_outputs(int module, bool a, bool b, Tick t);
 

@@ -118,6 +118,10 @@ class NativeBoard(NativeCode, Protocol):
         """What the board does: relay, brake, gates_pass (0, 1); lockouts of upper drivers without a supply."""
         ...
 
+    def begin_run(self) -> None:
+        """Say that the start procedure of an image is over: a brake lets go, times of faults count from now."""
+        ...
+
     def set_load(self, torque: float) -> None:
         """Load torque from now on, N m; positive opposes positive rotation."""
         ...

@@ -10,6 +10,10 @@ Interrupt = tuple[int, int]
 """Vector and routine."""
 
 
+Change = tuple[int, int, int]
+"""Of an input: samples before, looks at it since the last of them, value from then on."""
+
+
 class NativeCode(Protocol):
     """What a board has that executes an image; RuntimeError from one that does not."""
 
@@ -70,16 +74,21 @@ class NativeCode(Protocol):
         """A request as if the vector's peripheral had made it; ValueError for a vector that has no line."""
         ...
 
-    def tape(self, given: list[int]) -> None:
-        """Note from now on what the converter sees and what is written to the ePWM; also of the firmware.
+    def tape(self, given: list[int], inputs: list[list[Change]] = ...) -> None:
+        """Note from now on what comes from outside and what is written to the ePWM; also of the firmware.
 
         Args:
             given: codes for the converter instead, in the order of its samples, as long as there are some.
+            inputs: levels of pins, trip inputs and the encoder instead, as `taped` has them.
         """
         ...
 
-    def taped(self) -> tuple[list[int], list[tuple[int, int, int, int]]]:
-        """Codes, and writes: samples before, address, value, address behind the instruction (0 of the firmware)."""
+    def taped(self) -> tuple[list[int], list[tuple[int, int, int, int]], list[list[Change]]]:
+        """What has been noted.
+
+        Codes; writes: samples before, address, value, address behind the instruction (0 of the firmware); changes of
+        pins 0 to 15, 16 to 31 and 32 to 34, of the active trip inputs and of the encoder's edges.
+        """
         ...
 
     def replace_flash_library(self, erase: int, program: int, verify: int, scale: int) -> None:

@@ -57,6 +57,15 @@ def by_mark(items: Sequence[Choice], marks: Sequence[str], kind: str) -> list[Ch
 ImageArgument = Annotated[
     Path, typer.Argument(help="An .out file of cl2000 (COFF or ELF), Intel hex or a boot stream.")
 ]
+RunImageOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--image",
+        metavar="FILE",
+        help="Let this image of the C28x drive the plant, told over its serial port, with the native run beside it; "
+        "both are recorded every 5 ms.",
+    ),
+]
 AfterOption = Annotated[
     float,
     typer.Option(

@@ -3,12 +3,14 @@
 import json
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 from c28x_chip import PROGRAMS, linked_file
 
 from stillspin import core
 from stillspin.board import power
+from stillspin.board.image import blocks_of
 from stillspin.cases import profile
 from stillspin.errors import InputError
 from stillspin.image import opened, tape
@@ -18,7 +20,7 @@ OCTET = [(0.017, "f0")]
 """A reference for the control program above what it samples, so that its integrator climbs."""
 
 
-def played(file, seed, given=(), seconds=FOR):
+def played(file, seed, given=None, seconds=FOR):
     """What is recorded of an image, and a comparison with a tape while its board is on."""
     board = opened.power_on(opened.read(file), "bench", "A", seed)
     try:
@@ -30,7 +32,7 @@ def played(file, seed, given=(), seconds=FOR):
 
 
 def compared(file, seed, recorded):
-    _, compare, board = played(file, seed, recorded.samples)
+    _, compare, board = played(file, seed, recorded)
     try:
         return compare(recorded)
     finally:
@@ -79,16 +81,11 @@ def test_a_planted_error_is_found_where_it_is_written(tmp_path, recorded, text, 
 
 
 def test_what_is_missing_is_a_difference(control, recorded):
-    more = tape.Tape(
-        FOR,
-        recorded.samples,
-        [*recorded.writes[:40], (recorded.writes[40][0], 0x6809, 1), *recorded.writes[40:]],
-        OCTET,
-        "",
-    )
+    extra = (recorded.writes[40][0], 0x6809, 1)
+    more = replace(recorded, writes=[*recorded.writes[:40], extra, *recorded.writes[40:]])
     difference = compared(control, 1, more)
     assert difference.index == 40
-    silent = tape.Tape(FOR, recorded.samples, [*recorded.writes, (len(recorded.samples) - 1, 0x6809, 1)], OCTET, "")
+    silent = replace(recorded, writes=[*recorded.writes, (len(recorded.samples) - 1, 0x6809, 1)])
     assert compared(control, 1, silent).found is None
 
 
@@ -102,6 +99,42 @@ def test_the_firmware_is_recorded_as_well():
         board.close()
     assert len(made.samples) > 100
     assert {tape.register(write[1]) for write in made.writes} >= {"EPwm1.CMPA", "EPwm1.TBPRD", "EPwm2.CMPA"}
+
+
+RUN_PIN = 25
+
+
+def watched(file, given=None, pressed=(), over=False):
+    """What it does while the run switch is pressed and let go, the shaft turns, and the comparator trips."""
+    plant = {"solver": {"method": "rk4"}, "initial": {"speed": 90.0 if given is None else 0.0}}
+    board = core.load().VirtualBoard(
+        plant=plant, parameters={}, seed=1, image=blocks_of(opened.read(file).program, str(file))
+    )
+    try:
+        board.tape(given.samples if given else [], given.inputs if given else [])
+        for number in range(150):
+            board.set_input("run", float(number in pressed))
+            board.set_input("emergency", float(over and number >= 120))
+            board.advance(20_000)
+        samples, writes, inputs = board.taped()
+        recorded = tape.Tape(0.03, samples, [write[:3] for write in writes], [], "", inputs)
+        return recorded, tape.compare(given, board) if given else None
+    finally:
+        board.close()
+
+
+def test_pins_and_encoder_come_from_the_tape(tmp_path):
+    file = linked_file(tmp_path, "watching")
+    recorded, _ = watched(file, pressed=range(60, 90), over=True)
+    pins = recorded.inputs[RUN_PIN // 16]
+    assert {value >> RUN_PIN % 16 & 1 for _, _, value in pins} == {0, 1}
+    assert len(recorded.inputs[4]) > 50, "the shaft turns"
+    assert {value for _, _, value in recorded.inputs[3]} > {0}, "a trip"
+    again, difference = watched(file, recorded)
+    assert difference is None, "on a board whose shaft stands and whose inputs nobody touches"
+    assert again.inputs == recorded.inputs
+    without = replace(recorded, inputs=[[], [], [], [], []])
+    assert watched(file, without)[1] is not None, "the converter's codes alone do not decide"
 
 
 def run_command(*words):

@@ -15,6 +15,7 @@ from stillspin.cases.profile import Profile
 from stillspin.cases.scenario import Plot, Scenario
 from stillspin.entry import Entry
 from stillspin.errors import InputError
+from stillspin.image.closed_loop import RASTER
 from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.execute import Settings
 
@@ -127,6 +128,33 @@ class Scheme(Variant):
         """
         where = f"scheme {self.mark}"
         return {name: core.parameter(known, name, value, f"{where}: {name}") for name, value in self.parameters.items()}
+
+
+@dataclass(frozen=True)
+class Native(Variant):
+    """The firmware that is compiled for this computer, beside an image; recorded as rarely as that is."""
+
+    def applies(self, scenario: Scenario) -> bool:
+        """Everywhere."""
+        return True
+
+    def scenario(self, scenario: Scenario) -> Scenario:
+        """The same, not drawn."""
+        runs = tuple(replace(run, record_every=RASTER) for run in scenario.runs)
+        return replace(scenario, id=f"{scenario.id}-{self.mark}", runs=runs, plots=())
+
+    def settings(self, settings: Settings) -> Settings:
+        """Without the image."""
+        return replace(settings, image=None)
+
+
+def native() -> Native:
+    """The native run of the same steps."""
+    words = (
+        "The same C files compiled for this computer, on the same plant with the same noise. Its interrupts take the "
+        "time that they say, the image's that of its instructions."
+    )
+    return Native("native", "native", words)
 
 
 def scheme(name_or_path: str) -> Scheme:

@@ -11,12 +11,15 @@ from typing import Annotated
 import typer
 
 from stillspin import core, resources
+from stillspin.board.image import blocks_of
 from stillspin.cases import drift as drifts
 from stillspin.cases import scenario_file
 from stillspin.cases.scenario import Scenario
 from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
+from stillspin.image import opened
+from stillspin.image.opened import Image
 from stillspin.options import (
     ChangeOption,
     ClusterOption,
@@ -24,6 +27,7 @@ from stillspin.options import (
     OtherMotorOption,
     ParamsOption,
     ProfileOption,
+    RunImageOption,
     SchemeOption,
     SeedOption,
     by_mark,
@@ -47,7 +51,11 @@ def _carry_out(scenarios: Sequence[Scenario], options: Options, verdicts: junit.
     done = carry_out(scenarios, options)
     if verdicts:
         verdicts.add(junit.of_refused(words) for words in done.refused)
-    tables.summary(done.results, done.beside)
+    tables.summary(done.results, done.beside, "image" if options.image else "value")
+    for result in done.results:
+        for outcome in result.outcomes:
+            for words in outcome.notes:
+                print(f"{outcome.scenario}, run {outcome.run}: {words}")
     total = report.tally(done.results)
     reached = f"{counted(total.met, 'goal', total.goals)} met, {counted(total.broken, 'run')} broken off"
     print(f"{reached}; see {options.out / report.PAGE}")
@@ -64,6 +72,15 @@ def _carry_out(scenarios: Sequence[Scenario], options: Options, verdicts: junit.
         raise typer.Exit(ExitCode.SHORT)
 
 
+def _image(file: Path | None) -> Image | None:
+    """What is to be executed; it is said before anything runs when it cannot be."""
+    if file is None:
+        return None
+    image = opened.read(file)
+    blocks_of(image.program, str(file))
+    return image
+
+
 def run(
     *,
     scenario: Annotated[str, typer.Argument(help="Id of the scenario, such as A10.")],
@@ -77,13 +94,23 @@ def run(
         Path | None, typer.Option("--out", "-o", help="Directory of the results [default: results-SCENARIO].")
     ] = None,
     no_plots: Annotated[bool, typer.Option("--no-plots", help="Write no plots.")] = False,
+    image: RunImageOption = None,
 ) -> None:
     """Run one scenario: figures of merit, plots, and a Parquet file per run."""
     chosen = scenario_file.load(scenario)
     where = out or Path(f"results-{chosen.id}")
     _carry_out(
         [on_motor(motor, chosen)],
-        Options(profile_name, seed, where, change or [], draw=not no_plots, params=params, scheme=scheme),
+        Options(
+            profile_name,
+            seed,
+            where,
+            change or [],
+            draw=not no_plots,
+            params=params,
+            scheme=scheme,
+            image=_image(image),
+        ),
     )
 
 
@@ -126,9 +153,13 @@ def reproduce(
             help="Run the paper's figures and what is about the position error with the paper's scheme, too.",
         ),
     ] = True,
+    image: RunImageOption = None,
     junit_file: JunitOption = None,
 ) -> None:
-    """Commission the drive, run scenarios in parallel and write report.html and metrics.json."""
+    """Commission the drive, run scenarios in parallel and write report.html and metrics.json.
+
+    With --image the native drive is commissioned, and the image gets what it has found.
+    """
     chosen = _chosen(scenarios or [], motor or [])
     own = {scenario.id for scenario in chosen}
     verdicts = junit.Report(junit_file, "reproduce")
@@ -147,6 +178,7 @@ def reproduce(
         commission=commission_first,
         paper_scheme=paper_scheme,
         nameplate=nameplate,
+        image=_image(image),
         told=told,
     )
     with verdicts:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -17,7 +18,7 @@ from stillspin.exit_codes import ExitCode
 from stillspin.image import opened
 from stillspin.image import tape as tapes
 from stillspin.image.opened import Image
-from stillspin.image.tape import Difference, Octets, Tape
+from stillspin.image.tape import Difference, Octets
 from stillspin.options import ImageArgument, MotorOption, ProfileOption, SeedOption, number
 
 
@@ -61,7 +62,7 @@ def record(
     motor: MotorOption = resources.DEFAULT_MOTOR,
     seed: SeedOption = 1,
 ) -> None:
-    """Record what the converter sees on the virtual board, and every write to the ePWM, from power-on."""
+    """Record what converter, pins and encoder tell on the virtual board, and every write to the ePWM, from power-on."""
     octets = _octets(send or [])
     board = (
         opened.power_on(opened.read(file), profile_name, motor, seed) if file else _firmware(profile_name, motor, seed)
@@ -70,7 +71,7 @@ def record(
         tape = tapes.play(board, seconds, octets)
     finally:
         board.close()
-    tapes.save(Tape(tape.seconds, tape.samples, tape.writes, octets, file.name if file else "firmware"), out)
+    tapes.save(replace(tape, made_by=file.name if file else "firmware"), out)
     print(f"{out}: {counted(len(tape.samples), 'sample')}, {counted(len(tape.writes), 'write')} to the ePWM")
 
 
@@ -95,14 +96,14 @@ def replay(
     motor: MotorOption = resources.DEFAULT_MOTOR,
     seed: SeedOption = 1,
 ) -> None:
-    """Give an image the converter's codes of a recorded run; its writes to the ePWM have to be the same, bit for bit.
+    """Give an image what another run was told; its writes to the ePWM have to be the same, bit for bit.
 
     Exit status 4 when one differs: the first is named by step, register and source line.
     """
     image, tape = opened.read(file), tapes.load(tape_file)
     board = opened.power_on(image, profile_name, motor, seed)
     try:
-        tapes.play(board, tape.seconds, tape.octets, tape.samples)
+        tapes.play(board, tape.seconds, tape.octets, tape)
         difference = tapes.compare(tape, board)
         steps, writes = len(board.taped()[0]), len(board.taped()[1])
     finally:

@@ -85,15 +85,16 @@ def identity(ask: Ask) -> Identity:
     return Identity(parameters, signals, faults, crc, name, file, commit, bool(changed), edition)
 
 
-def table(ask: Ask, who: Identity, progress: Callable[[float], None] | None = None) -> Table:
+def table(ask: Ask, who: Identity, progress: Callable[[float], None] | None = None, *, remembers: bool = True) -> Table:
     """The drive's table, from the disk when it has been read before.
 
     Args:
         ask: asks the drive.
         who: what it said of itself.
         progress: called with the share read.
+        remembers: whether the disk is used; without, the drive is always asked the same.
     """
-    known = _load(who)
+    known = _load(who) if remembers else None
     if known:
         return replace(known, edition=who.edition)
     total = who.parameters + who.signals
@@ -111,7 +112,8 @@ def table(ask: Ask, who: Identity, progress: Callable[[float], None] | None = No
         if progress:
             progress((index + 1) / total)
     found = Table(who.version, who.crc, who.faults, tuple(parameters), tuple(signals))
-    _save(found)
+    if remembers:
+        _save(found)
     return replace(found, edition=who.edition)
 
 

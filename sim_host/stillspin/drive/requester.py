@@ -114,7 +114,7 @@ class Requester:
                 self.counts.repeated += attempt > 0
                 answer = self._ask(record, timeout or self.timeout)
             if answer is not None:
-                return _accepted(answer)
+                return accepted(answer)
         again = "" if repeat else "; whether it did what was asked is not known"
         raise NoAnswerError(f"no answer from the drive on {self.transport.name}{again}")
 
@@ -217,7 +217,13 @@ class Requester:
                 take_event(item)
 
 
-def _accepted(answer: Record) -> bytes:
+def accepted(answer: Record) -> bytes:
+    """The body of an answer.
+
+    Raises:
+        RefusedError: the drive says no.
+        DifferentError: it is no answer of this protocol.
+    """
     if not answer.body:
         raise DifferentError("an answer without a status: install the client that belongs to the firmware")
     status, body = answer.body[0], answer.body[1:]

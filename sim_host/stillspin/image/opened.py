@@ -56,6 +56,12 @@ def power_on(image: Image, profile_name: str, motor: str, seed: int) -> NativeBo
 def equip(board: NativeBoard, file: Path) -> Names:
     """Carry out TI's flash library on the model's cells, where the image has it; gives the image's names."""
     there = names.read(file)
+    hook_flash_library(board, there)
+    return there
+
+
+def hook_flash_library(board: NativeBoard, there: Names) -> None:
+    """The same with the names at hand."""
 
     def place(name: str) -> int:
         return there.addresses.get(name, there.addresses.get(f"_{name}", 0))
@@ -63,7 +69,6 @@ def equip(board: NativeBoard, file: Path) -> Names:
     erase, program, verify = (place(f"Flash2808_{name}") for name in ("Erase", "Program", "Verify"))
     if erase or program or verify:
         board.replace_flash_library(erase, program, verify, place("Flash_CPUScaleFactor"))
-    return there
 
 
 def advance(board: NativeBoard, seconds: float) -> None:

@@ -1,9 +1,10 @@
-"""One run's converter codes given to another, and what both write to the ePWM compared, bit for bit.
+"""What one run was told from outside given to another, and what both write to the ePWM compared, bit for bit.
 
 The run that is recorded is that of an image or of the firmware that is compiled for this computer. A tape has the codes
-in the order of the converter's samples, the octets that came at the serial port with their times, and every write to a
-register of the ePWM in order. What the program makes of equal inputs has to be equal: the first write that is not is
-named by its step, its register and the line of the image that made it. A step is a sample of the converter.
+in the order of the converter's samples; the levels of pins that the program read, the trip inputs and the encoder's
+edges by step; the octets that came at the serial port with their times; and every write to a register of the ePWM in
+order. What the program makes of equal inputs has to be equal: the first write that is not is named by its step, its
+register and the line of the image that made it. A step is a sample of the converter.
 """
 
 from __future__ import annotations
@@ -15,10 +16,11 @@ from itertools import zip_longest
 from pathlib import Path
 
 from stillspin.core_board import NativeBoard
+from stillspin.core_code import Change
 from stillspin.errors import InputError
 from stillspin.image import opened
 
-_FORMAT = 1
+_FORMAT = 2
 _MODULES = range(0x6800, 0x6980)
 _MODULE = 0x40
 _REGISTERS = {
@@ -43,6 +45,8 @@ class Tape:
     """Samples before it, address, value."""
     octets: list[Octets]
     made_by: str
+    inputs: list[list[Change]]
+    """Changes of pins 0 to 15, 16 to 31 and 32 to 34, of the active trip inputs, and of the encoder's edges."""
 
 
 @dataclass(frozen=True)
@@ -64,19 +68,19 @@ def register(address: int) -> str:
     return f"EPwm{module + 1}.{_REGISTERS.get(offset, f'0x{offset:02X}')}"
 
 
-def play(board: NativeBoard, seconds: float, octets: Sequence[Octets], given: Sequence[int] = ()) -> Tape:
+def play(board: NativeBoard, seconds: float, octets: Sequence[Octets], given: Tape | None = None) -> Tape:
     """Let a board that has just been switched on run, and record it.
 
     Args:
         board: of an image or the firmware.
         seconds: how long.
         octets: for its serial port.
-        given: codes for its converter.
+        given: what it is told in the place of what is there; its codes as long as there are some.
 
     Raises:
         CampaignError: the chip cannot go on.
     """
-    board.tape(list(given))
+    board.tape(given.samples if given else [], given.inputs if given else [])
     at = 0.0
     for when, text in sorted(octets):
         if when > seconds:
@@ -85,16 +89,16 @@ def play(board: NativeBoard, seconds: float, octets: Sequence[Octets], given: Se
         at = when
         board.serial_write(bytes.fromhex(text))
     opened.advance(board, seconds - at)
-    samples, writes = board.taped()
-    return Tape(seconds, samples, [write[:3] for write in writes], list(octets), "")
+    samples, writes, inputs = board.taped()
+    return Tape(seconds, samples, [write[:3] for write in writes], list(octets), "", inputs)
 
 
 def compare(tape: Tape, board: NativeBoard) -> Difference | None:
-    """Hold what a board has written, which was given the tape's codes, against the tape.
+    """Hold what a board has written, which was given the tape, against the tape.
 
     What came behind the last sample of the shorter run is not compared.
     """
-    samples, writes = board.taped()
+    samples, writes, _ = board.taped()
     end = min(len(samples), len(tape.samples))
     expected = [write for write in tape.writes if write[0] < end]
     found = [write for write in writes if write[0] < end]
@@ -117,6 +121,7 @@ def save(tape: Tape, file: Path) -> None:
         "octets": tape.octets,
         "samples": tape.samples,
         "writes": tape.writes,
+        "inputs": tape.inputs,
     }
     try:
         file.write_text(json.dumps(content, separators=(",", ":")) + "\n", encoding="utf-8")
@@ -140,6 +145,7 @@ def load(file: Path) -> Tape:
             [(int(step), int(address), int(value)) for step, address, value in content["writes"]],
             [(float(when), str(text)) for when, text in content["octets"]],
             str(content["made_by"]),
+            [[(int(step), int(looks), int(value)) for step, looks, value in rows] for rows in content["inputs"]],
         )
     except OSError as error:
         raise InputError(f"{file}: cannot be read ({error.strerror})") from error

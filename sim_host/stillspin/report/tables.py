@@ -44,9 +44,9 @@ def _print(table: Table) -> None:
     Console(width=None if console.is_terminal else 200).print(table)
 
 
-def summary(results: Iterable[ScenarioResult], beside: Sequence[Beside]) -> None:
-    """Every figure of merit, and beside it what the variants reach, where they were run."""
-    headings = ("scenario", "figure", "value", "unit", "paper", "goal", "")
+def summary(results: Iterable[ScenarioResult], beside: Sequence[Beside], of: str = "value") -> None:
+    """Every figure of merit, `of` says of what, and beside it what the variants reach, where they were run."""
+    headings = ("scenario", "figure", of, "unit", "paper", "goal", "")
     table = _table(*headings, *(item.variant.title for item in beside))
     for result in results:
         for figure in result.figures:

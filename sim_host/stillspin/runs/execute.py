@@ -17,6 +17,8 @@ from stillspin.core import NativeCore, NativeResult, Plant
 from stillspin.core_loop import NativeStepLoop
 from stillspin.entry import Entry
 from stillspin.errors import InputError
+from stillspin.image import closed_loop
+from stillspin.image.opened import Image
 from stillspin.measure import figures
 from stillspin.runs import records
 
@@ -31,6 +33,7 @@ class Settings:
     Attributes:
         parameters_from: where the firmware's parameters come from.
         firmware: version, board file, build and table.
+        image: what runs in the place of the firmware that is compiled for this computer; None for that.
     """
 
     profile: Profile
@@ -39,6 +42,7 @@ class Settings:
     revision: str
     parameters_from: str = "the nameplate"
     firmware: str = ""
+    image: Image | None = None
 
 
 @dataclass(frozen=True)
@@ -53,6 +57,7 @@ class Job:
     file: str
     about: dict[str, Any]
     units: dict[str, str]
+    image: Image | None = None
 
 
 @dataclass(frozen=True)
@@ -63,6 +68,7 @@ class Outcome:
         broken: why it does not count, None when it does.
         file: None when nothing was recorded.
         waveform: the file of the stretch that was looked into.
+        notes: what it leaves open, in words.
     """
 
     scenario: str
@@ -71,6 +77,7 @@ class Outcome:
     file: str | None
     waveform: str | None = None
     stats: dict[str, float] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
     @property
     def speed_ratio(self) -> float:
@@ -141,8 +148,10 @@ def _job(scenario: Scenario, run: Run, settings: Settings, known: _Known) -> Job
         "load": run.load,
         "duration": run.duration,
     }
+    if settings.image:
+        about["image"] = settings.image.file.name
     file = f"{scenario.id}-{run.name}.parquet"
-    return Job(scenario.id, run, plant, parameters, settings.seed, file, about, known.units)
+    return Job(scenario.id, run, plant, parameters, settings.seed, file, about, known.units, settings.image)
 
 
 def _machine(plant: Plant, schema: core.Schema) -> dict[str, float]:
@@ -211,15 +220,22 @@ def execute(job: Job, directory: Path, progress: Callable[[float], bool] | None)
     native = core.load()
     run = job.run
     try:
-        result = play(native, job, progress)
+        result, notes = _played(native, job, progress)
     except (RuntimeError, ValueError, ArithmeticError) as error:
         return Outcome(job.scenario, run.name, _one_line(error), None)
     broken = _broken(result, run)
-    about = {**job.about, "broken": broken, "faults": [list(fault) for fault in result.faults]}
+    about = {**job.about, "broken": broken, "faults": [list(fault) for fault in result.faults], "notes": list(notes)}
     records.write(directory / job.file, result.signals, about, job.units)
     looked = _write_waveform(directory, job, result)
     stats = {name: float(value) for name, value in result.stats.items()}
-    return Outcome(job.scenario, run.name, broken, job.file, looked, stats)
+    return Outcome(job.scenario, run.name, broken, job.file, looked, stats, notes)
+
+
+def _played(native: NativeCore, job: Job, progress: core.Progress | None) -> tuple[NativeResult, tuple[str, ...]]:
+    if job.image is None:
+        return play(native, job, progress), ()
+    played = closed_loop.play(native, job, job.image, progress)
+    return played, tuple(played.notes)
 
 
 def _write_waveform(directory: Path, job: Job, result: NativeResult) -> str | None:

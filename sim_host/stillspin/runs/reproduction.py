@@ -15,6 +15,7 @@ from stillspin.cases.variant import Beside, Scheme, Variant
 from stillspin.core import NativeCore
 from stillspin.drive.own import firmware
 from stillspin.errors import InputError
+from stillspin.image.opened import Image
 from stillspin.report import output
 from stillspin.report import page as report
 from stillspin.report.progress import Bar, PhaseBar
@@ -39,6 +40,7 @@ class Options:
         scheme: a name or a path, over both what the drive is told and what it finds out; None for its own.
         commission: whether the drive measures itself first, where the profile is for it and there is no `params`.
         paper_scheme, nameplate: the variants beside; others: and some more.
+        image: what runs in the place of the firmware for this computer, which then runs beside; None for that alone.
         told: is told of every scenario, also of those beside, as soon as it is measured.
     """
 
@@ -54,6 +56,7 @@ class Options:
     paper_scheme: bool = False
     nameplate: bool = False
     others: Sequence[Variant] = ()
+    image: Image | None = None
     told: Callable[[ScenarioResult], None] = lambda _: None
 
 
@@ -93,7 +96,8 @@ def carry_out(scenarios: Sequence[Scenario], options: Options) -> Reproduction:
                 refused += words
         own = {motor: _in_scheme(native, each, chosen) for motor, each in own.items()}
         settings = {motor: _in_scheme(native, each, chosen) for motor, each in settings.items()}
-        variants = _variants(own, settings, options)
+        settings = {motor: replace(each, image=options.image) for motor, each in settings.items()}
+        variants = [variant.native()] if options.image else _variants(own, settings, options)
         todo = [(scenario, settings[scenario.motor]) for scenario in scenarios]
         todo += [(v.scenario(s), v.settings(settings[s.motor])) for v in variants for s in scenarios if v.applies(s)]
         jobs = [job for scenario, each in todo for job in execute.prepare(scenario, each, native)]

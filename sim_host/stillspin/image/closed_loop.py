@@ -1,0 +1,366 @@
+"""A run of a scenario on an image, which drives the plant from the virtual chip's pins and is told by its serial port.
+
+What the native run calls, the image is sent: parameters, references and commands as records of the link. What the
+native run reads from the firmware's variables, the image streams: eight signals of one control interrupt every
+`RASTER`. True values are the plant's own, at the start of that interrupt's period. Which period it was follows from the
+drive's time in the sample, and from when its last octet came: the drive cannot have sent it earlier.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+import time
+from array import array
+from bisect import bisect_right
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from stillspin.board.image import blocks_of
+from stillspin.cases.scenario import Run
+from stillspin.core import NativeCore, Plant, Progress
+from stillspin.core_board import NativeBoard
+from stillspin.counted import counted
+from stillspin.drive import describe, values
+from stillspin.drive.protocol import CONTROL_PERIOD, STREAM_EVENT, Command, Request, Words
+from stillspin.drive.state import FAULT, READY, RUN, RawStatus
+from stillspin.drive.table import Signal, Table
+from stillspin.errors import StillspinError
+from stillspin.image import opened
+from stillspin.image.opened import Image
+from stillspin.image.serial_client import SerialClient
+from stillspin.link.errors import NoAnswerError, RefusedError
+from stillspin.link.records import Record
+
+RASTER = 50
+"""Periods between two samples: eight signals are on the line at 115200 bit/s for 38 of them."""
+_BEHIND = 40
+"""Periods from the start of a sample's period to its last octet, at least; for 38 of them it is on the line."""
+_BOOT = 500
+_READY = 50_000
+_LATE = 60
+_REPORT = 200
+
+_TRUE = {
+    **{"true_angle": "electrical_angle", "true_speed": "speed", "torque": "torque", "load_torque": "load_torque"},
+    **{"i_a": "i_a", "i_b": "i_b", "i_c": "i_c", "true_i_d": "i_d", "true_i_q": "i_q", "v_dc": "link_voltage"},
+    "true_load_angle": "load_angle",
+}
+"""Columns of a record, and what the board calls them."""
+_TURN = 2.0 * math.pi
+_STREAMED = {
+    **{"state": ("state", 1.0), "est_angle": ("angle", _TURN), "est_speed": ("speed", 1.0)},
+    **{"speed_ref": ("speed_reference", 1.0), "i_d_ref": ("current_d_reference", 1.0)},
+    **{"i_q_ref": ("current_q_reference", 1.0), "deviation_q": ("deviation_q", 1.0)},
+    "load_angle": ("load_angle", _TURN),
+}
+"""Columns, the drive's signals and the column's units in each of theirs."""
+_COMMANDS = {"start": Command.START, "stop": Command.STOP, "coast": Command.COAST, "reset": Command.RESET}
+
+
+class Wanted(Protocol):
+    """What is run."""
+
+    @property
+    def run(self) -> Run:
+        """Its steps."""
+
+    @property
+    def plant(self) -> Plant:
+        """All entries that are not at their defaults."""
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Of the firmware."""
+
+    @property
+    def seed(self) -> int:
+        """Of the noise."""
+
+
+@dataclass
+class Played:
+    """As NativeResult, and `notes`: what differs from a native run, in words."""
+
+    signals: Mapping[str, npt.NDArray[Any]]
+    completed: bool
+    reason: str
+    faults: Sequence[tuple[float, str]] = ()
+    waveform: Mapping[str, Mapping[str, npt.NDArray[Any]]] = field(default_factory=lambda: {"raster": {"time": _NONE}})
+    stats: Mapping[str, float] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+
+_NONE: npt.NDArray[Any] = np.empty(0)
+
+
+@dataclass(frozen=True)
+class _Sample:
+    period: int  # in which its last octet came
+    time_ms: int  # of the drive
+    values: tuple[float, ...]
+
+
+class _BrokenOffError(Exception):
+    """The run has ended before its time; says why."""
+
+
+def play(native: NativeCore, job: Wanted, image: Image, progress: Progress | None) -> Played:
+    """The run. Never raises for what happens inside it.
+
+    Args:
+        native: the native module.
+        job: what is run.
+        image: what drives the plant.
+        progress: gets the share done (0 … 1); false breaks the run off.
+
+    Raises:
+        InputError: the image cannot be executed.
+        ValueError: the plant cannot be.
+    """
+    blocks = blocks_of(image.program, str(image.file))
+    board = native.VirtualBoard(plant=job.plant, parameters={}, seed=job.seed, image=blocks)
+    opened.hook_flash_library(board, image.names)
+    return play_on(board, job, progress, [str(row["name"]) for row in native.signals()])
+
+
+def play_on(board: NativeBoard, job: Wanted, progress: Progress | None, columns: Sequence[str]) -> Played:
+    """The same on a board that has just been switched on, which is switched off at the end."""
+    loop = _ClosedLoop(board, job, progress or (lambda _: True))
+    reason = ""
+    began = time.perf_counter()
+    try:
+        loop.carry_out()
+    except (_BrokenOffError, StillspinError) as error:
+        reason = str(error)
+    finally:
+        resets = int(board.statistics()["resets"])
+        board.close()
+    reason = reason or ("the watchdog reset the chip" if resets else "")
+    return loop.played(columns, reason, time.perf_counter() - began)
+
+
+class _ClosedLoop:
+    def __init__(self, board: NativeBoard, job: Wanted, progress: Progress) -> None:
+        self._board, self._job, self._progress = board, job, progress
+        self._client = SerialClient(board, self._passed, self._event)
+        self._truth: dict[str, array[float]] = {name: array("d") for name in _TRUE}
+        self._samples: list[_Sample] = []
+        self._signals: list[Signal] = []
+        self._table: Table | None = None
+        self._origin: int | None = None
+        self._load = 0.0
+        self._corners = [time for time, _ in job.run.load]
+        self._faults: list[tuple[float, str]] = []
+        self._notes: list[str] = []
+        self._left = list(job.run.commands)
+
+    def carry_out(self) -> None:
+        self._client.pass_periods(_BOOT)
+        if self._finds_drive():
+            self._start()
+        else:
+            self._say_what_cannot_be()
+            self._begin()
+        assert self._origin is not None
+        end = self._origin + round(self._job.run.duration / CONTROL_PERIOD)
+        while self._client.period < end + (_LATE if self._table else 0):
+            self._client.pass_periods(1)
+            self._give_commands()
+            self._look_for_fault()
+
+    def _finds_drive(self) -> bool:
+        ask = self._client.ask
+        try:
+            who = describe.identity(ask)
+        except NoAnswerError:
+            return False
+        self._table = describe.table(ask, who, remembers=False)
+        return True
+
+    def _say_what_cannot_be(self) -> None:
+        run, words = self._job.run, []
+        if self._job.parameters:
+            words.append(counted(len(self._job.parameters), "parameter"))
+        words.append("the start")
+        if run.commands:
+            words.append(counted(len(run.commands), "reference") + " or commands")
+        self._notes.append(
+            "the image answers no request of the record protocol at 115200 bit/s (IDENTITY, asked three times): "
+            f"{', '.join(words)} could not be given to it and its own signals not be read; it ran under the "
+            "scenario's load, and figures are of the true machine alone"
+        )
+
+    # ---- what the drive is told
+
+    def _start(self) -> None:
+        self._wait_for_ready()
+        assert self._table is not None
+        for name, value in self._job.parameters.items():
+            values.change(self._client.ask, self._table.parameter(name), value)
+        self._client.align()
+        self._open_stream()
+        if self._left and self._left[0][1] == "speed_ref_rpm" and self._left[0][0] <= 0.0:
+            self._tell(*self._left.pop(0)[1:])
+        self._client.ask(Request.COMMAND, struct.pack("<Bi", Command.START, 0))
+        latest = self._client.period + round(self._job.run.max_start / CONTROL_PERIOD)
+        while self._state() != RUN:
+            self._client.pass_periods(1)
+            if self._state() == FAULT:
+                raise _BrokenOffError(f"fault during the start: {self._fault()}")
+            if self._client.period > latest:
+                raise _BrokenOffError(f"the start procedure took longer than {self._job.run.max_start:g} s")
+        self._begin()
+
+    def _wait_for_ready(self) -> None:
+        end = self._client.period + _READY
+        while self._client.period < end:
+            status = RawStatus.unpack(self._client.ask(Request.STATUS, b""))
+            if status.state == READY:
+                return
+            if status.state == FAULT:
+                raise _BrokenOffError(f"fault before the start: {self._fault()}")
+        raise _BrokenOffError(f"the drive is not ready {_READY * CONTROL_PERIOD:g} s after it answers")
+
+    def _open_stream(self) -> None:
+        assert self._table is not None
+        there = {signal.name: signal for signal in self._table.signals}
+        wanted = [there[name] for name, _ in _STREAMED.values() if name in there]
+        missing = [name for name, _ in _STREAMED.values() if name not in there]
+        if missing:
+            self._notes.append(f"this edition has no signal {', '.join(missing)}")
+        # As many as there can be: how long a sample is on the line says when it was taken.
+        self._signals = wanted + [wanted[0]] * len(missing)
+        places = [signal.index for signal in self._signals]
+        period_ms = round(RASTER * CONTROL_PERIOD * 1e3)
+        self._client.ask(Request.STREAM, struct.pack(f"<H{len(places)}H", period_ms, *places))
+
+    def _begin(self) -> None:
+        self._origin = self._client.period
+        self._board.begin_run()
+
+    def _give_commands(self) -> None:
+        while self._table and self._left and self._left[0][0] <= self._now() + 1e-9:
+            _, what, value = self._left.pop(0)
+            self._tell(what, value)
+
+    def _tell(self, what: str, value: float) -> None:
+        assert self._table is not None
+        words = f"{what} {value:g}"
+        if what.startswith("set:"):
+            parameter = self._table.parameter(what.removeprefix("set:"))
+            body = struct.pack("<Hi", parameter.id, parameter.to_raw(value))
+            self._client.tell(Request.PARAMETER_SET, body, words)
+        elif what == "speed_ref_rpm":
+            self._client.tell(Request.COMMAND, struct.pack("<Bi", Command.SPEED, round(value * 2**16)), words)
+        else:
+            self._client.tell(Request.COMMAND, struct.pack("<Bi", _COMMANDS[what], 0), words)
+
+    # ---- what comes back
+
+    def _now(self) -> float:
+        """Seconds since the start was over, negative before."""
+        return -1.0 if self._origin is None else (self._client.period - self._origin) * CONTROL_PERIOD
+
+    def _passed(self) -> None:
+        truth = self._board.truth()
+        for name, column in self._truth.items():
+            column.append(truth[_TRUE[name]])
+        self._renew_load()
+        if self._client.period % _REPORT == 0 and not self._progress(
+            min(max(self._now(), 0.0) / self._job.run.duration, 1.0)
+        ):
+            raise _BrokenOffError("stopped by the user")
+
+    def _renew_load(self) -> None:
+        points = self._job.run.load
+        if self._origin is None or not points:
+            return
+        now = self._now()
+        load = points[-1][1]
+        after = bisect_right(self._corners, now)
+        if after == 0:
+            load = points[0][1]
+        elif after < len(points):
+            (t0, before), (t1, then) = points[after - 1 : after + 1]
+            load = before + (then - before) * (now - t0) / (t1 - t0)
+        if load != self._load:
+            self._load = load
+            self._board.set_load(load)
+
+    def _event(self, record: Record) -> None:
+        form = f"<I{len(self._signals)}iB"
+        if record.kind != STREAM_EVENT or len(record.body) != struct.calcsize(form) or not self._signals:
+            return
+        time_ms, *raw, known = struct.unpack(form, record.body)
+        pairs = zip(self._signals, raw, strict=True)
+        self._samples.append(
+            _Sample(self._client.period, time_ms, tuple(signal.to_user(value, known) for signal, value in pairs))
+        )
+
+    def _state(self) -> int:
+        return int(self._samples[-1].values[0]) if self._samples else 0
+
+    def _look_for_fault(self) -> None:
+        if self._table and not self._faults and self._state() == FAULT:
+            self._faults.append((self._now(), self._fault()))
+            raise _BrokenOffError(f"fault: {self._faults[0][1]}")
+
+    def _fault(self) -> str:
+        status = RawStatus.unpack(self._client.ask(Request.STATUS, b""))
+        try:
+            words = self._client.ask(Request.WORDS, struct.pack("<BB", Words.FAULT, status.fault))
+        except RefusedError:
+            return f"number {status.fault}"
+        return words.split(b"\0")[0].decode("ascii", "replace")
+
+    # ---- the record
+
+    def played(self, columns: Sequence[str], reason: str, wall: float) -> Played:
+        notes = [*self._notes, *(f"refused: {words}" for words in self._client.refused)]
+        unknown = np.full(0, np.nan)
+        rows: dict[str, npt.NDArray[Any]] = {}
+        if self._origin is not None:
+            rows, said = self._rows(self._origin)
+            notes += said
+            unknown = np.full(len(rows["time"]), np.nan)
+        signals = {name: rows.get(name, unknown) for name in columns}
+        stats = {
+            "wall_seconds": wall,
+            "simulated_seconds": self._client.period * CONTROL_PERIOD,
+            "start_seconds": (self._origin or 0) * CONTROL_PERIOD,
+        }
+        return Played(signals, not reason, reason, self._faults, stats=stats, notes=notes)
+
+    def _rows(self, origin: int) -> tuple[dict[str, npt.NDArray[Any]], list[str]]:
+        truth = {name: np.frombuffer(column, dtype=np.float64) for name, column in self._truth.items()}
+        if not self._table:
+            at = np.arange(origin, self._client.period, RASTER)
+            return {"time": (at - origin) * CONTROL_PERIOD, **{k: v[at - 1] for k, v in truth.items()}}, []
+        arrived = np.array([sample.period for sample in self._samples])
+        drive = np.array([sample.time_ms for sample in self._samples]) * 10
+        offset = int(np.min(arrived - drive)) - _BEHIND
+        at = drive + offset
+        kept = at >= origin
+        late = (arrived - at - _BEHIND)[kept]
+        streamed = np.array([sample.values for sample in self._samples])[kept]
+        at = at[kept]
+        rows = {"time": (at - origin) * CONTROL_PERIOD, **{k: v[at - 1] for k, v in truth.items()}}
+        places = {signal.name: place for place, signal in enumerate(self._signals)}
+        for column, (name, scale) in _STREAMED.items():
+            if name in places:
+                rows[column] = streamed[:, places[name]] * scale
+        return rows, self._said_of_instants(late)
+
+    @staticmethod
+    def _said_of_instants(late: npt.NDArray[Any]) -> list[str]:
+        if not late.size or not late.any():
+            return []
+        return [
+            f"of {np.count_nonzero(late)} of {late.size} samples of the drive the period is known to "
+            f"{int(late.max())} periods of 100 µs alone, as its background was late or its port busy"
+        ]

@@ -1,0 +1,191 @@
+"""`run --image`, `reproduce --image`: scenarios on an image, told by its serial port, in a loop with the plant.
+
+Nobody here has an image of the drive. The firmware that is compiled for this computer stands in for one: told and read
+through its serial port alone, as an image is, it has to do what the native run does. The image is a control program of
+this project's assembler, which does not speak the record protocol.
+"""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from c28x_chip import linked_file
+from typer.testing import CliRunner
+
+from stillspin import cli, core
+from stillspin.cases import profile, scenario_file, variant
+from stillspin.errors import InputError
+from stillspin.exit_codes import ExitCode
+from stillspin.image import closed_loop, opened
+from stillspin.measure import figures, pieces
+from stillspin.runs import execute
+from stillspin.runs.execute import Settings
+
+LENGTH = 0.8
+
+
+def job(identifier="A10", *, image=None, **changed):
+    native = core.load()
+    scenario = scenario_file.load(identifier)
+    chosen = profile.load("bench", core.plant_schema(native), core.parameters(native), scenario.motor)
+    made = execute.prepare(scenario, Settings(chosen, profile.Changes(), 1, "", image=image), native)[0]
+    return replace(made, run=replace(made.run, **{"duration": LENGTH, "waveform": None, "reached": (), **changed}))
+
+
+def columns():
+    return [str(row["name"]) for row in core.load().signals()]
+
+
+def firmware(wanted):
+    return core.load().VirtualBoard(plant=wanted.plant, parameters={}, seed=wanted.seed)
+
+
+def through_the_port(wanted, progress=None):
+    return closed_loop.play_on(firmware(wanted), wanted, progress, columns())
+
+
+STEPS = {
+    "commands": ((0.0, "speed_ref_rpm", 300.0), (0.4, "set:speed_ramp", 4000.0), (0.45, "speed_ref_rpm", 350.0)),
+    "load": ((0.3, 0.0), (0.35, 0.5)),
+}
+
+
+@pytest.fixture(scope="module")
+def both():
+    wanted = job(**STEPS)
+    return through_the_port(wanted), execute.play(core.load(), wanted, None)
+
+
+def test_steps_given_over_the_port_do_what_the_native_runs_do(both):
+    seen, native = both
+    assert seen.completed
+    assert not seen.notes
+    time = seen.signals["time"]
+    assert np.allclose(np.diff(time), 0.005)
+    assert time[0] < 0.01
+    assert time[-1] > LENGTH - 0.01
+    late = time > 0.2
+    # A step is up to 5 ms late: at 3000 rpm/s that is 15 rpm of the ramp, of the load's slope a tenth of it.
+    for name, band in (("true_speed", 15.0), ("est_speed", 15.0), ("speed_ref", 15.0), ("load_torque", 0.05)):
+        same = np.interp(time[late], native.signals["time"], native.signals[name])
+        assert np.max(np.abs(seen.signals[name][late] - same)) < band, name
+
+
+def test_an_angle_is_held_against_that_of_its_own_period(both):
+    """At 300 rpm a period is half a degree: one that is taken for its neighbour is seen."""
+    errors = []
+    for result in both:
+        s = result.signals
+        late = s["time"] > 0.2
+        errors.append(pieces.wrap_degrees(s["est_angle"][late] - s["true_angle"][late]))
+    assert abs(np.mean(errors[0]) - np.mean(errors[1])) < 0.1
+    assert np.max(np.abs(errors[0])) < 1.5 * np.max(np.abs(errors[1]))
+
+
+def test_a_sample_is_of_the_period_that_is_said(monkeypatch):
+    """Its signals are those that the firmware's own variables had behind that period's interrupt, bit for bit."""
+    known, exact = {}, []
+    passed, rows = closed_loop._ClosedLoop._passed, closed_loop._ClosedLoop._rows
+
+    def look(self):
+        exact.append(self._board.signals()["angle"])
+        passed(self)
+
+    def keep(self, origin):
+        made = rows(self, origin)
+        known["rows"], known["origin"] = made[0], origin
+        return made
+
+    monkeypatch.setattr(closed_loop._ClosedLoop, "_passed", look)
+    monkeypatch.setattr(closed_loop._ClosedLoop, "_rows", keep)
+    through_the_port(job(duration=0.2))
+    at = np.round(known["rows"]["time"] * 1e4).astype(int) + known["origin"]
+    there = np.array(exact)[at]  # of the interrupt at the start of period `at`, seen at its end
+    assert np.array_equal(known["rows"]["est_angle"], there * 2.0 * np.pi)
+
+
+def test_what_the_drive_refuses_is_said():
+    seen = through_the_port(job(commands=((0.0, "speed_ref_rpm", 30.0), (0.1, "set:encoder_counts", 2048.0))))
+    assert any("set:encoder_counts 2048: encoder_counts may not change while" in words for words in seen.notes), (
+        seen.notes
+    )
+
+
+def test_a_fault_ends_the_run_with_its_words():
+    wanted = job()
+    plant = {**wanted.plant, "fault": {"open_phase": "a", "open_phase_at": 0.2}}
+    seen = through_the_port(replace(wanted, plant=plant))
+    assert not seen.completed
+    assert seen.reason.startswith("fault: ")
+    assert seen.faults[0][0] == pytest.approx(0.2, abs=0.1)
+
+
+def test_a_run_can_be_stopped():
+    seen = through_the_port(job(), lambda _: False)
+    assert seen.reason == "stopped by the user"
+
+
+@pytest.fixture
+def control(tmp_path):
+    return linked_file(tmp_path, "control")
+
+
+def test_a_program_without_the_protocol_runs_under_the_load(control):
+    wanted = job(image=opened.read(control), duration=0.3, load=((0.1, 0.0), (0.2, 0.5)))
+    seen = closed_loop.play(core.load(), wanted, wanted.image, None)
+    assert seen.completed
+    assert "answers no request of the record protocol" in seen.notes[0]
+    assert "18 parameters, the start, 1 reference or commands" in seen.notes[0]
+    assert seen.signals["load_torque"][-1] == pytest.approx(0.5)
+    assert np.isnan(seen.signals["est_angle"]).all()
+    assert seen.signals["true_speed"][-1] < -100, "nothing holds the shaft against the load"
+
+
+def test_the_native_run_beside_is_recorded_as_rarely():
+    scenario = variant.native().scenario(scenario_file.load("A10"))
+    assert {run.record_every for run in scenario.runs} == {closed_loop.RASTER}
+    assert variant.native().settings(Settings(None, None, 1, "", image=object())).image is None
+
+
+def test_a_figure_without_its_signals_has_no_value(control):
+    wanted = job(image=opened.read(control), duration=0.3)
+    seen = closed_loop.play(core.load(), wanted, wanted.image, None)
+    scenario = scenario_file.load("A10")
+    scenario = replace(scenario, figures=tuple(replace(figure, windows=((0.0, 0.3),)) for figure in scenario.figures))
+    made = {each.name: each for each in figures.evaluate(scenario, {"creep": dict(seen.signals)}, "bench")}
+    assert made["position_error_peak"].value is None
+    assert made["speed_ripple"].value is not None
+
+
+@pytest.fixture
+def cli_runs():
+    return lambda *arguments: CliRunner().invoke(cli.app, list(arguments))
+
+
+def test_the_commands(cli_runs, tmp_path, control, monkeypatch):
+    short = scenario_file.load("A10")
+    run = replace(short.runs[0], duration=0.3, reached=(), commands=())
+    monkeypatch.setattr(scenario_file, "load", lambda _: replace(short, runs=(run,), plots=()))
+    done = cli_runs("run", "A10", "--image", str(control), "--out", str(tmp_path / "r"))
+    assert done.exit_code == ExitCode.SHORT
+    assert "image" in done.stdout
+    assert "native" in done.stdout
+    assert "answers no request" in done.stdout
+    native = json.loads((tmp_path / "r" / "native.json").read_text())
+    assert native
+    assert (tmp_path / "r" / "runs" / "A10-creep.parquet").exists()
+
+
+def test_what_cannot_be_executed_is_said_first(cli_runs, tmp_path):
+    for command in ("run", "reproduce"):
+        done = cli_runs(command, "A10", "--image", str(tmp_path / "none.out"))
+        assert done.exit_code == ExitCode.BAD_INPUT
+        assert "none.out" in done.stderr
+
+
+def test_an_image_that_begins_nowhere_is_refused(tmp_path):
+    file = tmp_path / "x.out"
+    file.write_bytes(b"")
+    with pytest.raises(InputError):
+        opened.read(file)
