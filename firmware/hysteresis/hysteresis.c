@@ -1,5 +1,7 @@
 #include "firmware/hysteresis/hysteresis.h"
 
+#include <stddef.h>
+
 #include "firmware/base/clear.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/sampling.h"
@@ -18,9 +20,29 @@
 #define SUM_END_Q8 1073741824L   // of a thousand slices
 #define ADAPT_SHARE_Q15 4096L    // an eighth of the relative error of the frequency at a time
 
+typedef struct {
+  int32_t band_q20;      // A, half width at the beginning
+  int32_t rises;         // of the legs between two corrections of the band at the frequency that is wanted; 0: none are
+  uint16_t slice_ticks;  // of 10 ns
+} hysteresis_config_t;
+
 hysteresis_t hysteresis;
 
-static uint16_t slice_ticks(void) { return (uint16_t)q_shr_round(drive.config.values.slice_time * 100, 16); }
+static hysteresis_config_t config, made;
+
+static bool make(drive_config_t* c) {
+  (void)c;
+  made.band_q20 = parameters.hysteresis_band;
+  // Three legs, 10 ms: 30 rises per kHz.
+  const int32_t rises = q_max(1, q_shr_round(parameters.hysteresis_frequency * 30, 16));
+  made.rises = (parameters.hysteresis_frequency != 0) ? rises : 0;
+  made.slice_ticks = (uint16_t)q_shr_round(parameters.slice_time * 100, 16);
+  return true;
+}
+
+static void take(void) { config = made; }
+
+const config_part_t hysteresis_part = {make, take, NULL};
 
 static uint16_t decide(uint16_t state, uint16_t leg_bit, int32_t lack, int32_t band) {
   if (lack > band) return (uint16_t)(state | leg_bit);
@@ -90,13 +112,11 @@ static void hysteresis_samples(drive_t* d) {
 
 // The band follows the switching frequency: seldom enough to average over the modulation by the angle.
 static void adapt(hysteresis_t* h) {
-  if (++h->periods < ADAPT_PERIODS || drive.config.values.hysteresis_frequency == 0) return;
+  if (++h->periods < ADAPT_PERIODS || config.rises == 0) return;
   const uint16_t rises = (uint16_t)(h->switched - h->counted);
   h->counted = h->switched;
   h->periods = 0;
-  // Three legs, 10 ms: 30 rises per kHz.
-  const int32_t reference = q_max(1, q_shr_round(drive.config.values.hysteresis_frequency * 30, 16));
-  const int32_t error_q15 = q_clamp(q_div((int32_t)rises - reference, reference, 15), -32767L, 32767L);
+  const int32_t error_q15 = q_clamp(q_div((int32_t)rises - config.rises, config.rises, 15), -32767L, 32767L);
   h->band_q20 =
       q_clamp(h->band_q20 + q_mul(q_mul(h->band_q20, error_q15, 15), ADAPT_SHARE_Q15, 15), BAND_MIN_Q20, BAND_MAX_Q20);
 }
@@ -114,7 +134,7 @@ static abc_t reference_codes_q8(const drive_t* d, uint32_t angle_bam) {
 // From now on the references go where they will be in a period.
 static void refer(drive_t* d) {
   hysteresis_t* const h = &hysteresis;
-  const int32_t slices = (int32_t)(HAL_PWM_PERIOD_TICKS / slice_ticks());
+  const int32_t slices = (int32_t)(HAL_PWM_PERIOD_TICKS / config.slice_ticks);
   const int32_t speed = d->position.selected.speed_bpp;
   const int32_t passed_q30 = q_min((int32_t)hal_pwm_period_tick(), HAL_PWM_PERIOD_TICKS) * 107374L;
   const uint32_t angle = d->position.selected.angle_bam + (uint32_t)q_mul(speed, passed_q30, 30);
@@ -135,9 +155,9 @@ static void begin(drive_t* d) {
   clear(h, sizeof *h);
   h->offset_a_q8 = d->trim.offset_a_q8;
   h->offset_b_q8 = d->trim.offset_b_q8;
-  h->band_q20 = d->config.values.hysteresis_band;
+  h->band_q20 = config.band_q20;
   refer(d);
-  d->sliced = (uint16_t)hal_sampling_timer_begin(slice_ticks());
+  d->sliced = (uint16_t)hal_sampling_timer_begin(config.slice_ticks);
 }
 
 static bool hysteresis_step(drive_t* d) {

@@ -13,6 +13,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/interfaces/config_part.h"
 #include "firmware/interfaces/phase_control.h"
 
 /// Of the slices since the last control interrupt, codes.
@@ -34,7 +35,7 @@ typedef struct {
 } hysteresis_t;
 
 extern hysteresis_t hysteresis;
-
+extern const config_part_t hysteresis_part;
 extern const phase_control_t hysteresis_control;
 
 #endif

@@ -27,6 +27,7 @@ extern "C" {
 #include "firmware/drive/reset.h"
 #include "firmware/drive/sampling.h"
 #include "firmware/drive/steps.h"
+#include "firmware/interfaces/config_part.h"
 #include "firmware/mode/mode.h"
 }
 
@@ -119,6 +120,10 @@ inline void use_parameters() {
 #define USE(name) inside::config().values.name = parameters.name;
   CONFIG_VALUES(USE)
 #undef USE
+  drive_config_t beside = inside::config();  // a part may change what the drive's own parameters have made
+  for (const config_part_t* const* part = edition_config_parts; *part != nullptr; ++part) {
+    if ((*part)->make(&beside) && (*part)->take != nullptr) (*part)->take();
+  }
 }
 
 /// Whether the edition has a position source.

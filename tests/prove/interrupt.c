@@ -115,13 +115,20 @@ void commissioning_solve_motion(commissioning_t* c) {
   c->accel_q12 = any_i32;
 }
 
+// Those of a feature that needs nothing but its parameters, which are any.
+static void of_parameters(const config_part_t* part) {
+  (void)part->make(NULL);
+  part->take();
+}
+
 // The constants that features have beside it.
 static void any_parts(void) {
+  of_parameters(&encoder_part);
+  of_parameters(&hysteresis_part);
   any_flux(&flux_config);
   paper_config.kp_q30 = any_from(0, 107374182L);
   paper_config.ki_q40 = any_from(0, 220000000L);
   paper_config.terms = (uint16_t)any_from(0, 31);
-  encoder.trim_bam = any_u32;
   if_ramp_config.current_q20 = any_from(0, 100 * AMPERES_Q20);
   if_ramp_config.align_periods = any_from(2, 50000L);
   if_ramp_config.step_bpp = any_from(1, 683565276L);

@@ -15,16 +15,21 @@
 encoder_t encoder;
 
 static uint32_t made_trim_bam;
+static int32_t made_counts_per_turn;
 
 void encoder_reset(void) { clear(&encoder, sizeof encoder); }
 
 static bool make(drive_config_t* c) {
   (void)c;
   made_trim_bam = (uint32_t)q_mul64(parameters.encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
+  made_counts_per_turn = parameters.encoder_counts;
   return true;
 }
 
-static void take(void) { encoder.trim_bam = made_trim_bam; }
+static void take(void) {
+  encoder.trim_bam = made_trim_bam;
+  encoder.counts_per_turn = made_counts_per_turn;
+}
 
 void encoder_set_up(void) { hal_encoder_init((uint32_t)parameters.encoder_counts); }
 
@@ -38,7 +43,7 @@ uint32_t encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_tu
 
 // What it shows now, without the offset.
 static uint32_t angle_now(const drive_t* d) {
-  return encoder_angle(hal_encoder_count(), d->model.pole_pairs, d->config.values.encoder_counts);
+  return encoder_angle(hal_encoder_count(), d->model.pole_pairs, encoder.counts_per_turn);
 }
 
 // The present count means the angle in use.

@@ -12,6 +12,7 @@ typedef struct {
   uint32_t offset_bam;   // electrical angle at count 0, found at the start
   uint32_t aligned_bam;  // where it was found
   uint32_t trim_bam;     // deliberate turn of its angle
+  int32_t counts_per_turn;
 } encoder_t;
 
 extern encoder_t encoder;

@@ -9,6 +9,7 @@
 #include "firmware/interfaces/isr_cycles.h"
 #include "firmware/sources/sources.h"
 #include "hal/hal_profile.h"
+#include "hal/qmath/qcall.h"
 #include "svpwm/ripple.h"
 
 #define ADAPTATION_PERIODS 100u          // a tenth of the speed control's rate
@@ -30,6 +31,7 @@ flux_observer_config_t flux_config;
 int32_t flux_observability_q20;
 
 static flux_observer_config_t made;
+static int32_t beside_from_bpp, made_beside_from_bpp;  // beside a source that is right: from here on
 
 void flux_reset(void) { flux_observability_q20 = 0; }
 
@@ -65,10 +67,14 @@ static bool make(drive_config_t* c) {
   f->adaptation.magnet_q30 = ((p->flux_adapt & LEARN_MAGNET) != 0) ? MAGNET_SHARE_Q30 : 0;
   f->adaptation.current_q24 = CURRENT_LEAST_Q24;
   f->adaptation.lowest_bpp = LEARNING_BPP;
+  made_beside_from_bpp = qc_mul_sat(p->flux_low, c->bpp_per_rpm_q8, 24);
   return !is_selected || flux_observer_config_valid(f, &c->nameplate);
 }
 
-static void take(void) { flux_config = made; }
+static void take(void) {
+  flux_config = made;
+  beside_from_bpp = made_beside_from_bpp;
+}
 
 const config_part_t flux_part = {make, take, NULL};
 
@@ -138,8 +144,7 @@ estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, c
 }
 
 estimator_output_t flux_source_look_on(drive_t* d, const estimator_input_t* in, const estimator_output_t* truth) {
-  const int32_t least_bpp = q_mul_sat(d->config.values.flux_low, d->config.bpp_per_rpm_q8, 24);
-  if (q_abs_sat(truth->speed_bpp) >= least_bpp) return step(d, in, false);
+  if (q_abs_sat(truth->speed_bpp) >= beside_from_bpp) return step(d, in, false);
   flux_source_follow(d, truth);
   return *truth;
 }
