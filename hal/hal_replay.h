@@ -58,10 +58,10 @@ typedef struct {
   uint16_t input, window, work;  // played so far
   bool torn;                     // the recording was too short or too long for what the drive did
   void (*interrupt)(void);  // the window interrupt, played; while it records: takes the step that is in the recording
-  replay_period_t period;
 } hal_replay_t;
 
 extern hal_replay_t hal_replay;
+extern replay_period_t hal_replay_period;
 
 /// Mode and an empty period. interrupt: what a window that is played calls; while it records, who takes a step from the
 /// recording when the next one begins, and turns to a new period.

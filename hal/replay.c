@@ -8,6 +8,7 @@
 #define WORK_WINDOWS_LSB 4u
 
 hal_replay_t hal_replay;
+replay_period_t hal_replay_period;
 
 void hal_replay_start(replay_mode_t mode, void (*interrupt)(void)) {
   hal_replay.mode = mode;
@@ -26,10 +27,11 @@ void hal_replay_next_period(void) {
   hal_replay.window = 0u;
   hal_replay.work = 0u;
   hal_replay.torn = false;
-  hal_replay.period.input_count = 0u;
-  hal_replay.period.output_count = 0u;
-  hal_replay.period.window_count = 0u;
-  hal_replay.period.work_count = 0u;
+  replay_period_t* const p = &hal_replay_period;
+  p->input_count = 0u;
+  p->output_count = 0u;
+  p->window_count = 0u;
+  p->work_count = 0u;
 }
 
 static void interrupt(const hal_replay_t* t) {
@@ -51,7 +53,8 @@ void replay_play_windows(void) {
   hal_replay_t* const t = &hal_replay;
   if (t->mode != REPLAY_PLAYS || t->playing) return;
   t->playing = true;
-  while (t->window < t->period.window_count && (t->stepped || t->period.windows[t->window].call <= t->call)) {
+  const replay_period_t* const p = &hal_replay_period;
+  while (t->window < p->window_count && (t->stepped || p->windows[t->window].call <= t->call)) {
     play_window(t);
   }
   t->playing = false;
@@ -70,11 +73,12 @@ static uint16_t word_of(replay_work_t work) {
 bool hal_replay_has_work(replay_work_t work) {
   const hal_replay_t* const t = &hal_replay;
   if (t->mode != REPLAY_PLAYS) return true;
-  return t->work < t->period.work_count && (t->period.works[t->work] & WORK_WHICH) == word_of(work);
+  const replay_period_t* const p = &hal_replay_period;
+  return t->work < p->work_count && (p->works[t->work] & WORK_WHICH) == word_of(work);
 }
 
 static void note_work(uint16_t word) {
-  replay_period_t* const p = &hal_replay.period;
+  replay_period_t* const p = &hal_replay_period;
   if (p->work_count < REPLAY_WORKS) {
     p->works[p->work_count++] = (uint16_t)(word | p->window_count << WORK_WINDOWS_LSB);
   } else {
@@ -84,13 +88,14 @@ static void note_work(uint16_t word) {
 
 // The windows that came before it.
 static void play_work(hal_replay_t* t) {
-  if (t->work >= t->period.work_count) {
+  const replay_period_t* const p = &hal_replay_period;
+  if (t->work >= p->work_count) {
     t->torn = true;
     return;
   }
-  const uint16_t windows = (uint16_t)(t->period.works[t->work++] >> WORK_WINDOWS_LSB);
+  const uint16_t windows = (uint16_t)(p->works[t->work++] >> WORK_WINDOWS_LSB);
   t->playing = true;
-  while (t->window < windows && t->window < t->period.window_count) play_window(t);
+  while (t->window < windows && t->window < p->window_count) play_window(t);
   t->playing = false;
 }
 
@@ -121,7 +126,8 @@ bool hal_replay_end_period(void) {
 bool hal_replay_finish_period(void) {
   hal_replay_t* const t = &hal_replay;
   replay_play_windows();
-  const bool left = t->input != t->period.input_count || t->work != t->period.work_count;
+  const replay_period_t* const p = &hal_replay_period;
+  const bool left = t->input != p->input_count || t->work != p->work_count;
   if (t->mode == REPLAY_PLAYS && left) t->torn = true;
   return !t->torn;
 }
@@ -135,13 +141,14 @@ void replay_pass_call(void) {
 
 uint16_t replay_take(void) {
   hal_replay_t* const t = &hal_replay;
-  if (t->input < t->period.input_count) return t->period.inputs[t->input++];
+  const replay_period_t* const p = &hal_replay_period;
+  if (t->input < p->input_count) return p->inputs[t->input++];
   t->torn = true;
   return 0u;
 }
 
 uint16_t replay_note(uint16_t value) {
-  replay_period_t* const p = &hal_replay.period;
+  replay_period_t* const p = &hal_replay_period;
   if (hal_replay.mode == REPLAY_RECORDS) {
     if (p->input_count < REPLAY_INPUTS) {
       p->inputs[p->input_count++] = value;
@@ -162,14 +169,15 @@ static void tell(replay_period_t* p, uint16_t word) {
 
 void replay_output(replay_output_t what, const uint16_t* words, uint16_t count) {
   if (hal_replay.mode == REPLAY_OFF) return;
-  tell(&hal_replay.period, (uint16_t)what);
-  for (uint16_t k = 0u; k < count; k++) tell(&hal_replay.period, words[k]);
+  tell(&hal_replay_period, (uint16_t)what);
+  for (uint16_t k = 0u; k < count; k++) tell(&hal_replay_period, words[k]);
 }
 
 void replay_take_results(uint16_t* results, uint16_t count) {
   hal_replay_t* const t = &hal_replay;
-  const bool present = t->window < t->period.window_count;
-  for (uint16_t k = 0u; k < count; k++) results[k] = present ? t->period.windows[t->window].results[k] : 0u;
+  const replay_period_t* const p = &hal_replay_period;
+  const bool present = t->window < p->window_count;
+  for (uint16_t k = 0u; k < count; k++) results[k] = present ? p->windows[t->window].results[k] : 0u;
   if (present) {
     t->window++;
   } else {
@@ -180,11 +188,12 @@ void replay_take_results(uint16_t* results, uint16_t count) {
 void replay_note_results(const uint16_t* results, uint16_t count) {
   hal_replay_t* const t = &hal_replay;
   if (t->mode != REPLAY_RECORDS) return;
-  if (t->period.window_count >= REPLAY_WINDOWS) {
+  replay_period_t* const p = &hal_replay_period;
+  if (p->window_count >= REPLAY_WINDOWS) {
     t->torn = true;
     return;
   }
-  replay_window_t* const w = &t->period.windows[t->period.window_count++];
+  replay_window_t* const w = &p->windows[p->window_count++];
   w->call = t->stepped ? REPLAY_BEHIND : t->call;
   for (uint16_t k = 0u; k < REPLAY_RESULTS; k++) w->results[k] = (k < count) ? results[k] : 0u;
 }

@@ -12,6 +12,7 @@ a feature.toml, or a path from where the list is. What a feature.toml may say:
     signals     names of the signals that are its own
     faults      numbers of the faults that only it brings about
     words       kinds of words (text/word_list.h) that are its own
+    instead     by source outside of the folder that only this feature has a use for: what an image without it has
     rows        by table: what stands there, with its place: a number, smaller ones come first; commands of the console
                 have theirs from its list
 
@@ -97,6 +98,7 @@ class Feature:
     signals: tuple[str, ...] = ()
     faults: tuple[int, ...] = ()
     words: tuple[str, ...] = ()
+    instead: dict[str, str] = field(default_factory=dict)
     rows: dict[str, Any] = field(default_factory=dict)
 
     def places(self, table: str) -> list[tuple[int, str]]:
@@ -132,7 +134,7 @@ def feature_of(name: str, folder: Path) -> Feature:
         said = tomllib.loads(file.read_text(encoding="utf-8"))
         if unknown := said.get("rows", {}).keys() - TABLES.keys():
             raise ValueError(f"no table is called {', '.join(sorted(unknown))}")
-        lists = {key: value if key == "rows" else tuple(value) for key, value in said.items()}
+        lists = {key: value if isinstance(value, dict) else tuple(value) for key, value in said.items()}
         return Feature(name, folder, **lists)
     except (TypeError, ValueError) as error:
         raise ValueError(f"{file}: {error}") from error
@@ -321,6 +323,8 @@ def write_for_cmake(folder: Path, name: str) -> None:
     text = set_list("composed_sources", (path.resolve().as_posix() for path in sources))
     text += set_list("composed_from", (path.resolve().as_posix() for path in files))
     text += set_list("composed_left_out", (feature.name for feature in left_out(edition)))
+    instead = [(ROOT / source).as_posix() for feature in left_out(edition) for source in feature.instead.values()]
+    text += set_list("composed_instead", instead)
     text += set_list("composed_outside", (feature.folder.resolve().as_posix() for feature in outside))
     write_one(folder / CMAKE, text)
 

@@ -214,7 +214,9 @@ static void load_values(config_values_t* v) {
 
 static bool load_parts(drive_config_t* c) {
   bool fits = true;
-  for (uint16_t k = 0; edition_config_parts[k] != NULL; k++) fits = edition_config_parts[k]->make(c) && fits;
+  for (uint16_t k = 0; edition_config_parts[k] != NULL; k++) {
+    if (edition_config_parts[k]->make != NULL) fits = edition_config_parts[k]->make(c) && fits;
+  }
   return fits;
 }
 
@@ -229,9 +231,7 @@ const drive_config_t* drive_config_make(void) {
 
 void drive_config_take(drive_config_t* c, const drive_config_t* made) {
   *c = *made;
-  for (uint16_t k = 0; edition_config_parts[k] != NULL; k++) {
-    if (edition_config_parts[k]->take != NULL) edition_config_parts[k]->take();
-  }
+  for (uint16_t k = 0; edition_config_parts[k] != NULL; k++) edition_config_parts[k]->take();
 }
 
 bool drive_config_load(drive_config_t* c) {

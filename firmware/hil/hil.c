@@ -55,7 +55,7 @@ static void stop_bursts(void) {
 
 // The words that the first step is given against.
 static void clear_recording(void) {
-  replay_period_t* const p = &hal_replay.period;
+  replay_period_t* const p = &hal_replay_period;
   for (uint16_t k = 0; k < REPLAY_INPUTS; k++) p->inputs[k] = 0u;
   for (uint16_t k = 0; k < REPLAY_WORKS; k++) p->works[k] = 0u;
   for (uint16_t k = 0; k < REPLAY_WINDOWS; k++) {
@@ -117,9 +117,9 @@ static bool take_step(octet_reader_t* r) {
   delta_take(r, shape, hil.shape, HIL_STEP_SHAPE);
   if (!is_whole(*r, shape)) return false;
   for (uint16_t k = 0; k < HIL_STEP_SHAPE; k++) hil.shape[k] = shape[k];
-  if (hil.answered) hil_keep_answer(&hil.before, hil.torn, &hal_replay.period);
+  if (hil.answered) hil_keep_answer(&hil.before, hil.torn, &hal_replay_period);
   hal_replay_next_period();
-  replay_period_t* const p = &hal_replay.period;
+  replay_period_t* const p = &hal_replay_period;
   p->window_count = shape[0];
   p->input_count = shape[2];
   p->work_count = shape[3];
@@ -183,7 +183,7 @@ hil_result_t hil_step(octet_reader_t* step, octet_writer_t* answer) {
     hil.answered = true;
     hil.expected++;
   }
-  hil_put_answer(answer, sequence, hil.torn, &hal_replay.period, &hil.before);
+  hil_put_answer(answer, sequence, hil.torn, &hal_replay_period, &hil.before);
   return HIL_OK;
 }
 

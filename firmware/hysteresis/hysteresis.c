@@ -28,21 +28,17 @@ typedef struct {
 
 hysteresis_t hysteresis;
 
-static hysteresis_config_t config, made;
+static hysteresis_config_t config;
 
-static bool make(drive_config_t* c) {
-  (void)c;
-  made.band_q20 = parameters.hysteresis_band;
+static void take(void) {
+  config.band_q20 = parameters.hysteresis_band;
   // Three legs, 10 ms: 30 rises per kHz.
   const int32_t rises = q_max(1, q_shr_round(parameters.hysteresis_frequency * 30, 16));
-  made.rises = (parameters.hysteresis_frequency != 0) ? rises : 0;
-  made.slice_ticks = (uint16_t)q_shr_round(parameters.slice_time * 100, 16);
-  return true;
+  config.rises = (parameters.hysteresis_frequency != 0) ? rises : 0;
+  config.slice_ticks = (uint16_t)q_shr_round(parameters.slice_time * 100, 16);
 }
 
-static void take(void) { config = made; }
-
-const config_part_t hysteresis_part = {make, take, NULL};
+const config_part_t hysteresis_part = {NULL, take, NULL};
 
 static uint16_t decide(uint16_t state, uint16_t leg_bit, int32_t lack, int32_t band) {
   if (lack > band) return (uint16_t)(state | leg_bit);

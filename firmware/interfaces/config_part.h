@@ -12,10 +12,10 @@ struct drive_config;
 
 typedef struct {
   /// Makes them beside those in use, which an interrupt may read meanwhile, and may change what the drive's own
-  /// parameters have made. False where they do not fit together. Background level.
+  /// parameters have made. False where they do not fit together. Background level. NULL: `take` alone does it.
   bool (*make)(struct drive_config* c);
-  /// What was made last is in use from here on: with the rest of the configuration, between two control interrupts.
-  /// NULL: it has no constants of its own.
+  /// What was made last is in use from here on: with the rest of the configuration, between two control interrupts. The
+  /// parameters are still those that it was made of.
   void (*take)(void);
   /// The same for the board, with the power stage off and behind `take`; NULL: nothing.
   void (*set_up)(void);

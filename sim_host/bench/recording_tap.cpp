@@ -126,7 +126,7 @@ void RecordingTap::take_late_period() {
 
 void RecordingTap::take_period() {
   if (!hal_replay_finish_period()) torn_ = true;
-  const replay_period_t& p = hal_replay.period;
+  const replay_period_t& p = hal_replay_period;
   period_.step = step_of(p, sequence_, step_before_);
   period_.answer = answer_of(p, sequence_, answer_before_);
   period_.outputs.assign(p.outputs, p.outputs + p.output_count);

@@ -122,7 +122,8 @@ inline void use_parameters() {
 #undef USE
   drive_config_t beside = inside::config();  // a part may change what the drive's own parameters have made
   for (const config_part_t* const* part = edition_config_parts; *part != nullptr; ++part) {
-    if ((*part)->make(&beside) && (*part)->take != nullptr) (*part)->take();
+    const bool fits = (*part)->make == nullptr || (*part)->make(&beside);
+    if (fits) (*part)->take();
   }
 }
 

@@ -60,7 +60,7 @@ class Stepping : public Drive {
   static HilPeriod empty() { return {{}, {kInTime}, {}}; }
 
   static void expect_on_tape(const HilPeriod& told) {
-    const replay_period_t& p = hal_replay.period;
+    const replay_period_t& p = hal_replay_period;
     EXPECT_EQ(Words(p.inputs, p.inputs + p.input_count), told.inputs);
     EXPECT_EQ(Words(p.works, p.works + p.work_count), told.works);
     ASSERT_EQ(p.window_count, told.windows.size());
@@ -151,7 +151,7 @@ TEST_F(Stepping, WhatIsToldStandsOnTheTape) {
     ASSERT_TRUE(a.fits) << n;
     ASSERT_EQ(a.sequence, n);
     ASSERT_EQ(a.torn, hal_replay.torn ? 1 : 0) << n;
-    ASSERT_EQ(a.outputs, Words(hal_replay.period.outputs, hal_replay.period.outputs + hal_replay.period.output_count));
+    ASSERT_EQ(a.outputs, Words(hal_replay_period.outputs, hal_replay_period.outputs + hal_replay_period.output_count));
     ASSERT_EQ(a.crc, hil_signals_crc());
     ASSERT_EQ(hil_expected(), n + 1);
   }

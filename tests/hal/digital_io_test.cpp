@@ -42,11 +42,11 @@ TEST_F(DigitalIo, emergency_stop_is_pressed_when_its_line_is_low) {
 TEST_F(DigitalIo, emergency_stop_of_a_tape_is_the_tapes) {
   hal_replay_start(REPLAY_RECORDS, nullptr);
   EXPECT_FALSE(hal_digital_io_emergency());
-  EXPECT_EQ(hal_replay.period.inputs[0], 0);
+  EXPECT_EQ(hal_replay_period.inputs[0], 0);
   hal_replay_start(REPLAY_PLAYS, [] {});
-  hal_replay.period.input_count = 2;
-  hal_replay.period.inputs[0] = 1;
-  hal_replay.period.inputs[1] = 0;
+  hal_replay_period.input_count = 2;
+  hal_replay_period.inputs[0] = 1;
+  hal_replay_period.inputs[1] = 0;
   bus.forget_steps();
   EXPECT_TRUE(hal_digital_io_emergency());
   EXPECT_FALSE(hal_digital_io_emergency());

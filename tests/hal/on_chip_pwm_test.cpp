@@ -24,7 +24,7 @@ TEST_F(OnChipPwm, no_device_is_ever_on_before_the_gates_are) {
 // Host in the loop: what the drive asks of the gates is played and noted, never done.
 TEST_F(OnChipPwm, no_device_is_ever_on_while_a_tape_plays) {
   hal_replay_start(REPLAY_PLAYS, [] {});
-  replay_period_t& period = hal_replay.period;
+  replay_period_t& period = hal_replay_period;
   period.input_count = REPLAY_INPUTS;
   std::fill(std::begin(period.inputs), std::end(period.inputs), std::uint16_t{1});  // all that is asked for is done
   fw.gates_on = true;

@@ -177,8 +177,8 @@ TEST_F(Pwm, a_tape_says_whether_a_frame_was_in_time) {
     hal_replay_start(REPLAY_RECORDS, nullptr);
     bus.words[EPWM_BASE(1) + EPWM_TBCTR] = in_time ? 5000 : 5001;
     EXPECT_EQ(hal_pwm_write(&frame, 5000), in_time);
-    ASSERT_EQ(hal_replay.period.input_count, 1);
-    EXPECT_EQ(hal_replay.period.inputs[0], in_time ? 1 : 0);
+    ASSERT_EQ(hal_replay_period.input_count, 1);
+    EXPECT_EQ(hal_replay_period.inputs[0], in_time ? 1 : 0);
     hal_replay_start(REPLAY_OFF, nullptr);
   }
 }

@@ -110,9 +110,9 @@ class ReplayOfDrivers : public BusTest {
     hal_replay_start(mode, [] {});
     hal_replay_step_begin();
   }
-  static Words inputs() { return {hal_replay.period.inputs, hal_replay.period.inputs + hal_replay.period.input_count}; }
+  static Words inputs() { return {hal_replay_period.inputs, hal_replay_period.inputs + hal_replay_period.input_count}; }
   static Words outputs() {
-    return {hal_replay.period.outputs, hal_replay.period.outputs + hal_replay.period.output_count};
+    return {hal_replay_period.outputs, hal_replay_period.outputs + hal_replay_period.output_count};
   }
 };
 
@@ -133,8 +133,8 @@ TEST_F(ReplayOfDrivers, each_call_is_noted_with_what_it_was_told_and_has_returne
 TEST_F(ReplayOfDrivers, each_call_is_played_without_its_registers) {
   for (const Call& call : kCalls) {
     start(REPLAY_PLAYS);
-    hal_replay.period.input_count = static_cast<std::uint16_t>(call.played.size());
-    std::copy(call.played.begin(), call.played.end(), hal_replay.period.inputs);
+    hal_replay_period.input_count = static_cast<std::uint16_t>(call.played.size());
+    std::copy(call.played.begin(), call.played.end(), hal_replay_period.inputs);
     bus.forget_steps();
     const std::uint32_t result = call.act();
     if (!call.played.empty()) {
@@ -163,7 +163,7 @@ TEST_F(ReplayOfDrivers, nothing_is_noted_without_a_tape) {
   EXPECT_EQ(hal_replay.call, 0);
   EXPECT_EQ(inputs(), Words{});
   EXPECT_EQ(outputs(), Words{});
-  EXPECT_EQ(hal_replay.period.window_count, 0);
+  EXPECT_EQ(hal_replay_period.window_count, 0);
 }
 
 // Switching off is never wrong, and the lamp may tell what the drive in the simulation does.
@@ -183,14 +183,14 @@ TEST_F(ReplayOfDrivers, a_window_has_its_six_results_in_the_order_of_its_members
   start(REPLAY_RECORDS);
   hal_adc_window_t was;
   hal_adc_read_window(&was);
-  ASSERT_EQ(hal_replay.period.window_count, 1);
-  const replay_window_t noted = hal_replay.period.windows[0];
+  ASSERT_EQ(hal_replay_period.window_count, 1);
+  const replay_window_t noted = hal_replay_period.windows[0];
   EXPECT_EQ(Words(noted.results, noted.results + REPLAY_RESULTS),
             (Words{was.start_a, was.start_b, was.end_a, was.end_b, was.link, was.aux}));
 
   start(REPLAY_PLAYS);
-  hal_replay.period.window_count = 1;
-  hal_replay.period.windows[0] = {0, {1, 2, 3, 4, 5, 6}};
+  hal_replay_period.window_count = 1;
+  hal_replay_period.windows[0] = {0, {1, 2, 3, 4, 5, 6}};
   bus.forget_steps();
   hal_adc_window_t is;
   hal_adc_read_window(&is);
@@ -204,13 +204,13 @@ TEST_F(ReplayOfDrivers, a_slice_has_its_three_results) {
   hal_timed_samples_t was;
   hal_sampling_timer_read(&was);
   EXPECT_EQ((Words{was.current_a, was.current_b, was.link}), (Words{108, 109, 110})) << "sequencer 2 took them";
-  ASSERT_EQ(hal_replay.period.window_count, 1);
-  const replay_window_t noted = hal_replay.period.windows[0];
+  ASSERT_EQ(hal_replay_period.window_count, 1);
+  const replay_window_t noted = hal_replay_period.windows[0];
   EXPECT_EQ(Words(noted.results, noted.results + REPLAY_RESULTS), (Words{108, 109, 110, 0, 0, 0}));
 
   start(REPLAY_PLAYS);
-  hal_replay.period.window_count = 1;
-  hal_replay.period.windows[0] = {0, {1, 2, 3}};
+  hal_replay_period.window_count = 1;
+  hal_replay_period.windows[0] = {0, {1, 2, 3}};
   bus.forget_steps();
   hal_timed_samples_t is;
   hal_sampling_timer_read(&is);

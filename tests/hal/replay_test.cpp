@@ -56,12 +56,12 @@ TEST_F(Replay, InterruptsComeBackBetweenTheSamePieces) {
   ASSERT_TRUE(hal_replay_finish_period());
   const std::string recorded = order;
   EXPECT_EQ(recorded, "1a23b4cd5");
-  const replay_period_t period = hal_replay.period;
+  const replay_period_t period = hal_replay_period;
 
   order.clear();
   hal_replay_start(REPLAY_PLAYS, window);
-  hal_replay.period = period;
-  hal_replay.period.output_count = 0;
+  hal_replay_period = period;
+  hal_replay_period.output_count = 0;
   step(false);
   EXPECT_TRUE(hal_replay_finish_period());
   EXPECT_EQ(order, recorded);
@@ -79,7 +79,7 @@ TEST_F(Replay, AStepIsTakenFromItBeforeTheNextBegins) {
   EXPECT_EQ(taken, 0);
   step(false);
   EXPECT_EQ(taken, 1);
-  EXPECT_EQ(hal_replay.period.output_count, 1) << "of the second alone";
+  EXPECT_EQ(hal_replay_period.output_count, 1) << "of the second alone";
 }
 
 // Work of the background that is asked for by a step and done behind that one or the next.
@@ -87,7 +87,7 @@ TEST_F(Replay, WorkIsDoneBehindTheStepThatItWasDoneBehind) {
   hal_replay_start(REPLAY_RECORDS, nullptr);
   step(false);
   ASSERT_TRUE(hal_replay_finish_period());
-  const replay_period_t without = hal_replay.period;
+  const replay_period_t without = hal_replay_period;
   hal_replay_next_period();
   step(false);
   EXPECT_TRUE(hal_replay_has_work(REPLAY_RELOADED));
@@ -97,15 +97,15 @@ TEST_F(Replay, WorkIsDoneBehindTheStepThatItWasDoneBehind) {
   hal_replay_work_end();
   EXPECT_FALSE(hal_replay.working);
   ASSERT_TRUE(hal_replay_finish_period());
-  const replay_period_t with = hal_replay.period;
+  const replay_period_t with = hal_replay_period;
 
   hal_replay_start(REPLAY_PLAYS, window);
-  hal_replay.period = without;
+  hal_replay_period = without;
   step(false);
   EXPECT_FALSE(hal_replay_has_work(REPLAY_RELOADED));
   EXPECT_TRUE(hal_replay_finish_period());
   hal_replay_next_period();
-  hal_replay.period = with;
+  hal_replay_period = with;
   step(false);
   EXPECT_FALSE(hal_replay_has_work(REPLAY_EVALUATED)) << "another piece";
   ASSERT_TRUE(hal_replay_has_work(REPLAY_RELOADED));
@@ -138,12 +138,12 @@ TEST_F(Replay, WorkIsDoneOnTheSameSideOfTheStepBetweenTheSameWindows) {
   ASSERT_TRUE(hal_replay_finish_period());
   const std::string recorded = order;
   EXPECT_EQ(recorded, "1Xa23b4cd5Y6");
-  const replay_period_t period = hal_replay.period;
+  const replay_period_t period = hal_replay_period;
 
   order.clear();
   hal_replay_start(REPLAY_PLAYS, window);
-  hal_replay.period = period;
-  hal_replay.period.output_count = 0;
+  hal_replay_period = period;
+  hal_replay_period.output_count = 0;
   play_work('X');
   EXPECT_FALSE(hal_replay_has_work(REPLAY_RELOADED)) << "the next is behind the step";
   step(false);
@@ -155,8 +155,8 @@ TEST_F(Replay, WorkIsDoneOnTheSameSideOfTheStepBetweenTheSameWindows) {
 
 TEST_F(Replay, WorkThatIsLeftTearsIt) {
   hal_replay_start(REPLAY_PLAYS, window);
-  hal_replay.period.work_count = 1;
-  hal_replay.period.works[0] = REPLAY_RELOADED;
+  hal_replay_period.work_count = 1;
+  hal_replay_period.works[0] = REPLAY_RELOADED;
   step(false);
   EXPECT_FALSE(hal_replay_finish_period());
 }
@@ -172,7 +172,7 @@ TEST_F(Replay, WorkThatThereIsNotTearsIt) {
 
 TEST_F(Replay, AWindowWithoutAnInterruptTearsIt) {
   hal_replay_start(REPLAY_PLAYS, nullptr);
-  hal_replay.period.window_count = 1u;
+  hal_replay_period.window_count = 1u;
   step(false);
   EXPECT_EQ(order, "abcd");
   EXPECT_FALSE(hal_replay_finish_period());
@@ -201,7 +201,7 @@ TEST_F(Replay, APeriodThatEndsInItsStepIsTakenBeforeWork) {
   EXPECT_EQ(taken, 0);
   work('X');
   EXPECT_EQ(taken, 1);
-  ASSERT_EQ(hal_replay.period.work_count, 1) << "of the next";
+  ASSERT_EQ(hal_replay_period.work_count, 1) << "of the next";
   step(false);
   EXPECT_TRUE(hal_replay_end_period());
 }
@@ -209,7 +209,7 @@ TEST_F(Replay, APeriodThatEndsInItsStepIsTakenBeforeWork) {
 TEST_F(Replay, APeriodThatEndsInWorkIsTakenBehindIt) {
   taken = 0;
   hal_replay_start(REPLAY_RECORDS, [] {
-    taken += 10 * hal_replay.period.work_count + 1;
+    taken += 10 * hal_replay_period.work_count + 1;
     hal_replay_next_period();
   });
   step(false);
@@ -218,16 +218,16 @@ TEST_F(Replay, APeriodThatEndsInWorkIsTakenBehindIt) {
   EXPECT_EQ(taken, 0);
   hal_replay_work_end();
   EXPECT_EQ(taken, 11) << "with the work";
-  EXPECT_EQ(hal_replay.period.work_count, 0);
+  EXPECT_EQ(hal_replay_period.work_count, 0);
 }
 
 // A computer's word for where its work was done may be wrong.
 TEST_F(Replay, WorkIsNotPlayedBehindWindowsThatThereAreNot) {
   hal_replay_start(REPLAY_PLAYS, window);
-  hal_replay.period.window_count = 1;
-  hal_replay.period.windows[0].results[0] = 1;
-  hal_replay.period.work_count = 1;
-  hal_replay.period.works[0] = REPLAY_RELOADED | 3u << 4;
+  hal_replay_period.window_count = 1;
+  hal_replay_period.windows[0].results[0] = 1;
+  hal_replay_period.work_count = 1;
+  hal_replay_period.works[0] = REPLAY_RELOADED | 3u << 4;
   step(false);
   play_work('X');
   EXPECT_EQ(order, "1abcdX") << "the one, and the work behind it";
@@ -253,22 +253,22 @@ TEST_F(Replay, MoreThanItHoldsTearsIt) {
     return hal_replay_finish_period();
   };
   EXPECT_TRUE(whole_with(REPLAY_INPUTS, REPLAY_WINDOWS));
-  EXPECT_EQ(hal_replay.period.windows[REPLAY_WINDOWS - 1].results[2], 3);
-  EXPECT_EQ(hal_replay.period.windows[REPLAY_WINDOWS - 1].results[3], 0) << "a slice has three";
+  EXPECT_EQ(hal_replay_period.windows[REPLAY_WINDOWS - 1].results[2], 3);
+  EXPECT_EQ(hal_replay_period.windows[REPLAY_WINDOWS - 1].results[3], 0) << "a slice has three";
   EXPECT_FALSE(whole_with(REPLAY_INPUTS + 1, REPLAY_WINDOWS));
   EXPECT_FALSE(whole_with(REPLAY_INPUTS, REPLAY_WINDOWS + 1));
 }
 
 TEST_F(Replay, AWindowThatNobodyReadsTearsIt) {
   hal_replay_start(REPLAY_PLAYS, [] {});
-  hal_replay.period.window_count = 1;
+  hal_replay_period.window_count = 1;
   step(false);
   EXPECT_FALSE(hal_replay_finish_period());
 }
 
 TEST_F(Replay, InputsThatAreLeftTearIt) {
   hal_replay_start(REPLAY_PLAYS, window);
-  hal_replay.period.input_count = 1;
+  hal_replay_period.input_count = 1;
   step(false);
   EXPECT_FALSE(hal_replay_finish_period());
 }

@@ -47,7 +47,7 @@ TEST_F(ReplayWords, WorkHasItsKindItsSideAndTheWindowsBeforeIt) {
   window();
   work(REPLAY_EVALUATED);
   work(REPLAY_RELOADED);
-  const replay_period_t& p = hal_replay.period;
+  const replay_period_t& p = hal_replay_period;
   ASSERT_EQ(p.work_count, 4);
   EXPECT_EQ(p.works[0], REPLAY_EVALUATED | 1u << 3);
   EXPECT_EQ(p.works[1], REPLAY_RELOADED | 1u << 3 | 1u << 4);
@@ -57,7 +57,7 @@ TEST_F(ReplayWords, WorkHasItsKindItsSideAndTheWindowsBeforeIt) {
 
 TEST_F(ReplayWords, WorkIsOfferedByItsKindOnItsSideAlone) {
   start(REPLAY_PLAYS);
-  replay_period_t& p = hal_replay.period;
+  replay_period_t& p = hal_replay_period;
   p.work_count = 3;
   p.works[0] = REPLAY_EVALUATED | 1u << 3;
   p.works[1] = REPLAY_RELOADED;
@@ -86,7 +86,7 @@ TEST_F(ReplayWords, AWindowHasTheNumberOfTheCallItCameIn) {
   hal_replay_step_end();
   replay_call();
   window();
-  const replay_period_t& p = hal_replay.period;
+  const replay_period_t& p = hal_replay_period;
   ASSERT_EQ(p.window_count, 4);
   EXPECT_EQ(p.windows[0].call, 0);
   EXPECT_EQ(p.windows[1].call, 0);
@@ -97,9 +97,9 @@ TEST_F(ReplayWords, AWindowHasTheNumberOfTheCallItCameIn) {
 
 TEST_F(ReplayWords, InputsAreTakenInTheirOrderAndZeroBehindTheLast) {
   start(REPLAY_PLAYS);
-  hal_replay.period.input_count = 2;
-  hal_replay.period.inputs[0] = 11;
-  hal_replay.period.inputs[1] = 22;
+  hal_replay_period.input_count = 2;
+  hal_replay_period.inputs[0] = 11;
+  hal_replay_period.inputs[1] = 22;
   EXPECT_EQ(replay_take(), 11);
   EXPECT_EQ(replay_take(), 22);
   EXPECT_TRUE(hal_replay_finish_period());
@@ -111,12 +111,12 @@ TEST_F(ReplayWords, OutputsFitToTheLastWord) {
   const std::vector<std::uint16_t> words(REPLAY_OUTPUTS - 1, 7);
   start(REPLAY_RECORDS);
   replay_output(REPLAY_FRAME, words.data(), REPLAY_OUTPUTS - 1);
-  EXPECT_EQ(hal_replay.period.output_count, REPLAY_OUTPUTS);
-  EXPECT_EQ(hal_replay.period.outputs[0], REPLAY_FRAME);
-  EXPECT_EQ(hal_replay.period.outputs[REPLAY_OUTPUTS - 1], 7);
+  EXPECT_EQ(hal_replay_period.output_count, REPLAY_OUTPUTS);
+  EXPECT_EQ(hal_replay_period.outputs[0], REPLAY_FRAME);
+  EXPECT_EQ(hal_replay_period.outputs[REPLAY_OUTPUTS - 1], 7);
   EXPECT_TRUE(hal_replay_finish_period());
   replay_output(REPLAY_ENABLE, nullptr, 0);
-  EXPECT_EQ(hal_replay.period.output_count, REPLAY_OUTPUTS);
+  EXPECT_EQ(hal_replay_period.output_count, REPLAY_OUTPUTS);
   EXPECT_FALSE(hal_replay_finish_period());
 }
 
@@ -126,7 +126,7 @@ TEST_F(ReplayWords, WhatDoesNotFitLeavesTheRestAsItIs) {
   for (std::uint16_t k = 0; k < REPLAY_INPUTS + 1; ++k) replay_note(k);
   for (std::uint16_t k = 0; k < REPLAY_OUTPUTS + 1; ++k) replay_output(REPLAY_LEGS, nullptr, 0);
   for (std::uint16_t k = 0; k < REPLAY_WINDOWS + 1; ++k) window();
-  const replay_period_t& p = hal_replay.period;
+  const replay_period_t& p = hal_replay_period;
   EXPECT_EQ(p.works[0], REPLAY_RELOADED | 1u << 3);
   EXPECT_EQ(p.works[REPLAY_WORKS - 1], REPLAY_RELOADED | 1u << 3);
   EXPECT_EQ(p.inputs[0], 0);
@@ -142,7 +142,7 @@ TEST_F(ReplayWords, WhatDoesNotFitLeavesTheRestAsItIs) {
 
 TEST_F(ReplayWords, ANewPeriodHasNothingOfTheLast) {
   const auto expect_new = [] {
-    const replay_period_t& p = hal_replay.period;
+    const replay_period_t& p = hal_replay_period;
     EXPECT_EQ(p.input_count + p.output_count + p.window_count + p.work_count, 0);
     EXPECT_FALSE(hal_replay.stepped || hal_replay.playing || hal_replay.ended || hal_replay.torn);
     EXPECT_EQ(hal_replay.call + hal_replay.input + hal_replay.window + hal_replay.work, 0);
@@ -168,8 +168,8 @@ TEST_F(ReplayWords, ANewPeriodHasNothingOfTheLast) {
   expect_new();
 
   start(REPLAY_PLAYS);
-  hal_replay.period.input_count = hal_replay.period.window_count = hal_replay.period.work_count = 1;
-  hal_replay.period.works[0] = REPLAY_RELOADED;
+  hal_replay_period.input_count = hal_replay_period.window_count = hal_replay_period.work_count = 1;
+  hal_replay_period.works[0] = REPLAY_RELOADED;
   std::uint16_t results[REPLAY_RESULTS];
   replay_take();
   replay_take();
@@ -198,9 +198,9 @@ TEST_F(ReplayWords, OnlyARecordingTakesNotes) {
     EXPECT_EQ(replay_note(7), 7);
     window();
     work(REPLAY_RELOADED);
-    EXPECT_EQ(hal_replay.period.input_count + hal_replay.period.window_count + hal_replay.period.work_count, 0);
+    EXPECT_EQ(hal_replay_period.input_count + hal_replay_period.window_count + hal_replay_period.work_count, 0);
     replay_output(REPLAY_ENABLE, nullptr, 0);
-    EXPECT_EQ(hal_replay.period.output_count, mode == REPLAY_PLAYS ? 1 : 0) << "told again, to be compared";
+    EXPECT_EQ(hal_replay_period.output_count, mode == REPLAY_PLAYS ? 1 : 0) << "told again, to be compared";
   }
 }
 
@@ -254,8 +254,8 @@ TEST_F(ReplayWords, AWindowIsPlayedOnceWhateverItsOwnCallsAre) {
     replay_take_results(results, REPLAY_RESULTS);
     replay_call();
   });
-  hal_replay.period.window_count = 3;
-  for (unsigned k = 0; k < 3; ++k) hal_replay.period.windows[k].call = k == 2 ? REPLAY_BEHIND : 1;
+  hal_replay_period.window_count = 3;
+  for (unsigned k = 0; k < 3; ++k) hal_replay_period.windows[k].call = k == 2 ? REPLAY_BEHIND : 1;
   hal_replay_step_begin();
   EXPECT_EQ(interrupts, 0);
   replay_call();

@@ -115,16 +115,10 @@ void commissioning_solve_motion(commissioning_t* c) {
   c->accel_q12 = any_i32;
 }
 
-// Those of a feature that needs nothing but its parameters, which are any.
-static void of_parameters(const config_part_t* part) {
-  (void)part->make(NULL);
-  part->take();
-}
-
 // The constants that features have beside it.
 static void any_parts(void) {
-  of_parameters(&encoder_part);
-  of_parameters(&hysteresis_part);
+  encoder_part.take();  // of the parameters, which are any
+  hysteresis_part.take();
   any_flux(&flux_config);
   paper_config.kp_q30 = any_from(0, 107374182L);
   paper_config.ki_q40 = any_from(0, 220000000L);

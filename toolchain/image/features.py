@@ -69,8 +69,13 @@ def _inside(path: Path) -> str:
 
 
 def tables(linked: Linked) -> Linked:
-    """Those of the edition, its packed texts among them."""
-    return {path: obj for path, obj in linked.items() if any(f"/{folder}" in _inside(path) for folder in TABLES)}
+    """Those of the edition, its packed texts and what it has instead of a source of another one among them."""
+    instead = {Path(source).name for feature in compose.all_features() for source in feature.instead.values()}
+    return {
+        path: obj
+        for path, obj in linked.items()
+        if any(f"/{folder}" in _inside(path) for folder in TABLES) or path.stem in instead
+    }
 
 
 def shares(linked: Linked, always: Collection[str]) -> dict[Path, Row]:
@@ -94,8 +99,15 @@ def shares(linked: Linked, always: Collection[str]) -> dict[Path, Row]:
 
 
 def _feature_of(path: Path) -> str:
-    """The feature in whose folder its source is, the innermost: one may lie in another's folder."""
-    names = (feature.name for feature in compose.all_features())
+    """The feature in whose folder its source is, the innermost: one may lie in another's folder.
+
+    Or that alone has a use for it.
+    """
+    features = compose.all_features()
+    for feature in features:
+        if any(path.match(f"{Path(source).parent}/CMakeFiles/*/{Path(source).name}.obj") for source in feature.instead):
+            return feature.name
+    names = (feature.name for feature in features)
     return max((name for name in names if f"{FIRMWARE}{name}/" in path.as_posix()), key=len, default="")
 
 

@@ -75,5 +75,7 @@ def in_other_editions(objects: Iterable[ObjectFile], name: str) -> bool:
 @cache
 def _names(feature: str) -> set[str]:
     """What its sources define."""
-    text = "\n".join(code(path) for path in sorted((compose.ROOT / "firmware" / feature).rglob("*.c")))
+    folder = compose.ROOT / "firmware" / feature
+    own = [*folder.rglob("*.c"), *(compose.ROOT / source for source in compose.feature_of(feature, folder).instead)]
+    text = "\n".join(code(path) for path in sorted(own))
     return {name for _, name in DEFINITION.findall(text)} | set(TABLE.findall(text))

@@ -144,6 +144,8 @@ def _add_indirect(
     for caller in sorted(graph.by_pointer - known):
         depth.complaints.append(f"{caller} calls through a pointer: add it to {TABLE.name}")
     for caller in sorted(known - graph.by_pointer):
+        if in_other_editions(objects, caller):
+            continue
         depth.complaints.append(f"{TABLE.name}: {caller} calls nothing through a pointer")
     return nested
 

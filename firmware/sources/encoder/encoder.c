@@ -14,26 +14,16 @@
 
 encoder_t encoder;
 
-static uint32_t made_trim_bam;
-static int32_t made_counts_per_turn;
-
 void encoder_reset(void) { clear(&encoder, sizeof encoder); }
 
-static bool make(drive_config_t* c) {
-  (void)c;
-  made_trim_bam = (uint32_t)q_mul64(parameters.encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
-  made_counts_per_turn = parameters.encoder_counts;
-  return true;
-}
-
 static void take(void) {
-  encoder.trim_bam = made_trim_bam;
-  encoder.counts_per_turn = made_counts_per_turn;
+  encoder.trim_bam = (uint32_t)q_mul64(parameters.encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
+  encoder.counts_per_turn = parameters.encoder_counts;
 }
 
 void encoder_set_up(void) { hal_encoder_init((uint32_t)parameters.encoder_counts); }
 
-const config_part_t encoder_part = {make, take, encoder_set_up};
+const config_part_t encoder_part = {NULL, take, encoder_set_up};
 
 uint32_t encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn) {
   // 2^32 / counts, exact where the counts are a power of two, to 1e-5 of a turn otherwise.
