@@ -3,7 +3,7 @@
 
 Usage: toolchain/mutants.py [SAMPLE] [near] [seed=NUMBER] [PART...]
 
-make mutants SAMPLE=60 does it for all parts. near: the part's own tests alone; seed: another draw.
+make mutants SAMPLE=20 does it for all parts. near: the part's own tests alone; seed: another draw.
 
 Changes sources of the floors one token or statement at a time (toolchain/mutation/mutate.py), a drawn sample of SAMPLE
 (or `all`) in every part. What does not compile, and what gives the object code of the original or of an earlier mutant

@@ -68,7 +68,7 @@ COMMANDS = {
     ),
     "mcdc": Made("make mcdc", "build/mcdc/figures.json", (*DRIVE, "tests", "toolchain/mcdc.py")),
     "mutants": Made(
-        'make mutants SAMPLE="60 near seed=41"',
+        'make mutants SAMPLE="20 near seed=47"',
         "build/mutants/figures.json",
         (*DRIVE, "tests", "toolchain/mutants.py", "toolchain/mutation"),
     ),
