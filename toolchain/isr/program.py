@@ -13,6 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+import compose
 from image import check
 from image.command_file import CommandFile, read_command_file
 from image.elf import read_object
@@ -60,12 +61,17 @@ class Objects:
     aside: list[Path]
 
     def of(self, edition: str) -> dict[Path, Path]:
-        """Those of an edition: its tables, and all that has no edition."""
+        """Those of an edition: its tables, what it has instead of others' sources, and all that has no edition."""
         found = {}
+        gone = compose.left_out(compose.read_edition(edition))
+        replaced = {source for feature in gone for source in feature.instead}
+        own = f"stillspin_own_{edition}.dir"
         for target, source in self.sources.items():
             inside = source.relative_to(self.build).as_posix() if source.is_relative_to(self.build) else ""
             table = TABLES.fullmatch(inside)
-            if not table or (table[1] or check.WHOLE) == edition:
+            of_another = "stillspin_own_" in target.as_posix() and own not in target.parts
+            of_another |= source.is_relative_to(ROOT) and source.relative_to(ROOT).as_posix() in replaced
+            if not of_another and (not table or (table[1] or check.WHOLE) == edition):
                 found[target] = source
         return found
 
