@@ -78,6 +78,7 @@ TEST_F(Sources, BesideTheEncoderTheDeviationIsThatOfTheFrameInUse) {
 
 // Beside the encoder AVV looks on in its own frame, or a stator flux in its place.
 TEST_F(Sources, BesideTheEncoderSomebodyLooksOn) {
+  NEEDS("sources/flux");
   for (const std::int32_t beside : {0, 1}) {
     run_with(POSITION_ENCODER);
     position_preset(&drive, kHere, 0);

@@ -21,6 +21,7 @@ using namespace stillspin::test;
 
 // Below its lower speed a flux that looks on follows the truth; from there on it says what it sees, either way round.
 TEST_F(Sources, AFluxLooksOnFromItsLowerSpeedOn) {
+  NEEDS("sources/flux");
   for (const int rpm : {-120, -80, 80, 120}) {
     run_with(POSITION_ENCODER);
     parameters.flux_low = raw(100.0, 16);
