@@ -12,7 +12,8 @@ from test_image_time import symbol, with_symbols
 from stillspin.c28x import linked, timed
 from stillspin.c28x.program import assemble_files
 from stillspin.errors import InputError
-from stillspin.flash import debug_lines, names
+from stillspin.flash import coff_lines, debug_lines, names
+from stillspin.flash.debug_head import Strings
 from stillspin.flash.debug_lines import Lines, Row, Source
 from stillspin.flash.program import Block
 
@@ -100,9 +101,47 @@ def test_steps_of_instructions_files_and_unknown_opcodes():
     assert str(lines.at(0x106)) == "a.c:2"
 
 
+def described(opcodes, forms=(0x1F, 0x0B), *, files=((0, "main.c"), (1, "part.c")), extra=b"", strings=None):
+    """A unit of DWARF 5 and its .debug_line_str, which has the paths where their form says so."""
+    kept = bytearray(strings or b"")
+
+    def path(text):
+        if forms[0] == 0x08:
+            return text.encode() + b"\0"
+        kept.extend(text.encode() + b"\0")
+        return struct.pack("<I", len(kept) - len(text) - 1)
+
+    folders = b"\1\1" + bytes((forms[0],)) + b"\2" + path("/home/build") + path("src")
+    table = b"\3\1" + bytes((forms[0],)) + b"\2" + bytes((forms[1],)) + b"\5\x1e" + bytes((len(files),))
+    for folder, name in files:
+        table += path(name) + folder.to_bytes({0x0B: 1, 0x05: 2, 0x0F: 1}[forms[1]], "little") + bytes(range(16))
+    lengths = bytes((0, 1, 1, 1, 1, 0, 0, 0, 1, 0, 0, 1))
+    head = struct.pack("<BBBbBB", 1, 1, 1, -5, 14, 13) + lengths + folders + table
+    body = struct.pack("<HBBI", 5, 4, 0, len(head)) + head + extra + opcodes
+    return struct.pack("<I", len(body)) + body, bytes(kept)
+
+
+@pytest.mark.parametrize("forms", [(0x1F, 0x0B), (0x1F, 0x05), (0x0E, 0x0F), (0x08, 0x0F)])
+def test_dwarf_5_describes_its_lists_and_counts_files_from_0(forms):
+    section, strings = described(at(0x3F4000) + b"\3\x09\1" + b"\4\0\2\2\1" + END, forms)
+    kept = Strings(of_all=strings) if forms[0] == 0x0E else Strings(of_lines=strings)
+    lines = debug_lines.read(section, kept)
+    assert str(lines.at(0x3F4000)) == "src/part.c:10", "the second, as in every version the first one is number 1"
+    assert str(lines.at(0x3F4002)) == "main.c:10", "in the compilation's own folder"
+
+
+def test_dwarf_5_that_is_damaged_is_left_out():
+    good = unit(at(0x10) + b"\1\2\4" + END)
+    section, strings = described(at(0x20) + b"\1\2\4" + END)
+    for bad in (section[:12] + b"\xff" + section[13:], described(at(0x20) + b"\1" + END, (0x55, 0x0B))[0]):
+        assert debug_lines.read(bad + good, Strings(strings)).at(0x10) is not None
+    assert debug_lines.read(section + good, Strings()).at(0x20) is None, "its strings are missing"
+    assert debug_lines.read(section + good, Strings(strings)).at(0x10) is not None
+
+
 def test_damaged_and_unknown_units_are_left_out():
     good = unit(at(0x10) + b"\1\2\4" + END)
-    for bad in (unit(at(0x20) + b"\1" + END, version=5), unit(b"\0\x05\2\0"), struct.pack("<I", 3) + b"\3\0\1"):
+    for bad in (unit(at(0x20) + b"\1" + END, version=6), unit(b"\0\x05\2\0"), struct.pack("<I", 3) + b"\3\0\1"):
         assert debug_lines.read(bad + good).at(0x10) is not None
         assert debug_lines.read(good + bad).at(0x20) is None
     assert not debug_lines.read(struct.pack("<I", 0xFFFFFFFF) + bytes(40))
@@ -161,6 +200,60 @@ def with_section(data, name, octets):
     out += name.encode() + b"\0"
     struct.pack_into("<II", out, heads, 0, place)
     return bytes(out)
+
+
+def more(octets):
+    return octets + bytes(18 - len(octets))
+
+
+def with_line_numbers(data, section, entries):
+    """The COFF file with a table of line numbers of a section, by its place, behind all."""
+    out = bytearray(data)
+    (optional,) = struct.unpack_from("<H", data, 16)
+    at_ = 22 + optional + 48 * section
+    struct.pack_into("<I", out, at_ + 28, len(data))
+    struct.pack_into("<I", out, at_ + 36, len(entries))
+    return bytes(out) + b"".join(struct.pack("<IH", *entry) for entry in entries)
+
+
+def function(name, address, line, strings):
+    return symbol(name, address, more=1, strings=strings) + (
+        symbol(".bf", address, kind=101, more=0)[:17] + b"\1" + more(struct.pack("<IH", 0, line))
+    )
+
+
+def test_coff_s_own_line_numbers(tmp_path):
+    """Blocks of a function each, whose numbers count from the line of its .bf; two files."""
+    strings = bytearray()
+    entries = [
+        symbol(".file", 0, kind=103, more=0)[:17] + b"\1" + more(b"first.c"),
+        function("_one", 0x3F4000, 10, strings),
+        function("_two", 0x3F4010, 30, strings),
+        symbol(".file", 0, kind=103, more=0)[:17] + b"\1" + more(b"second.c"),
+        function("_three", 0x3F4020, 5, strings),
+    ]
+    data = with_symbols(coff([Block(0x3F4000, (0x7700,) * 64)]), entries, strings)
+    numbers = [(2, 0), (0x3F4002, 2), (0x3F4006, 7), (6, 0), (0x3F4018, 3), (12, 0), (0x3F4024, 2)]
+    file = tmp_path / "own.out"
+    file.write_bytes(with_line_numbers(data, 2, numbers))
+    lines = names.read(file).lines
+    expected = {
+        **{0x3F4000: "first.c:10", 0x3F4001: "first.c:10", 0x3F4002: "first.c:11", 0x3F4006: "first.c:16"},
+        **{0x3F4010: "first.c:30", 0x3F4018: "first.c:32", 0x3F4020: "second.c:5", 0x3F4025: "second.c:6"},
+    }
+    assert {address: str(lines.at(address)) for address in expected} == expected
+    assert lines.at(0x3F4040) is None
+    assert lines.places("second.c", 6) == [0x3F4024]
+
+
+def test_line_numbers_without_their_function_are_left_out():
+    strings = bytearray()
+    data = with_symbols(coff([Block(0x3F4000, (0x7700,) * 64)]), [symbol("_main", 0x3F4000)], strings)
+    assert not coff_lines.read(data)
+    lines = coff_lines.read(with_line_numbers(data, 2, [(0x3F4002, 2), (99, 0), (0x3F4004, 1)]))
+    assert lines.at(0x3F4002) is None
+    with pytest.raises(struct.error):
+        coff_lines.read(with_line_numbers(data, 2, [(0, 0)])[:30])
 
 
 # ---- the commands

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 from stillspin.errors import InputError
 from stillspin.flash.program import Block, Program, assemble
@@ -17,8 +18,11 @@ _HEADER = struct.Struct("<HHIIIHHH")
 _OPTIONAL = struct.Struct("<HHIIIIII")
 _SECTION = struct.Struct("<8sIIIIIIIIIHH")
 _SYMBOL = struct.Struct("<8sIhHBB")
+_LINE_SIZE = 6
 _NAMED = {2, 3, 6}
 """Storage classes of what has an address: external, static, label."""
+BEGIN_OR_END = 101
+"""Storage class of .bf and .ef, about the lines of a function."""
 _ABSOLUTE = -1
 _TEXT = 0x0020
 _EXECUTABLE = 0x0002
@@ -88,17 +92,64 @@ def addresses(data: bytes) -> dict[str, int]:
     return {name: value for name, value, section in _symbols(data) if section > 0 or section == _ABSOLUTE}
 
 
+class Symbol(NamedTuple):
+    """An entry of the table of symbols."""
+
+    name: str
+    """Of what has an address, and of what is about a function's lines."""
+    value: int
+    section: int
+    kind: int
+    """Storage class."""
+
+    @property
+    def has_address(self) -> bool:
+        """Whether it is something of the program's, not of its description."""
+        return self.kind in _NAMED
+
+
 def _symbols(data: bytes) -> Iterator[tuple[str, int, int]]:
     """Name, value and section of what has an address."""
+    for _, entry, _ in raw_symbols(data):
+        if entry.has_address and entry.name:
+            yield entry.name, entry.value, entry.section
+
+
+def raw_symbols(data: bytes) -> Iterator[tuple[int, Symbol, bytes]]:
+    """Every symbol with its index, and the octets of what more there is of it.
+
+    Raises:
+        struct.error: the file is cut short.
+    """
     _, _, _, table, symbols, _, _, _ = _HEADER.unpack_from(data)
-    strings = table + symbols * _SYMBOL.size
     at = 0
     while at < symbols:
-        name, value, section, _, kind, more = _SYMBOL.unpack_from(data, table + at * _SYMBOL.size)
+        begin = table + at * _SYMBOL.size
+        name, value, section, _, kind, more = _SYMBOL.unpack_from(data, begin)
+        words = text(name, data) if kind in _NAMED or kind == BEGIN_OR_END else ""
+        behind = begin + _SYMBOL.size
+        yield at, Symbol(words, value, section, kind), data[behind : behind + more * _SYMBOL.size]
         at += 1 + more
-        words = _name(name, data, strings) if kind in _NAMED else ""
-        if words:
-            yield words, value, section
+
+
+def text(octets: bytes, data: bytes) -> str:
+    """A name of up to so many characters in place, or where it is in the file's table of strings."""
+    _, _, _, table, symbols, _, _, _ = _HEADER.unpack_from(data)
+    return _name(octets, data, table + symbols * _SYMBOL.size)
+
+
+def line_tables(data: bytes) -> Iterator[tuple[int, int, bytes]]:
+    """Of every section that has line numbers: where it runs, its words, and the octets of the numbers.
+
+    Raises:
+        struct.error: the file is cut short.
+    """
+    count, optional = _HEADER.unpack_from(data)[1], _HEADER.unpack_from(data)[5]
+    for index in range(count):
+        at = _HEADER.size + optional + index * _SECTION.size
+        _, _, run, size, _, _, where, _, entries, _, _, _ = _SECTION.unpack_from(data, at)
+        if where and entries:
+            yield run, size, data[where : where + entries * _LINE_SIZE]
 
 
 def section(data: bytes, wanted: str) -> Iterator[bytes]:
@@ -123,7 +174,7 @@ def section(data: bytes, wanted: str) -> Iterator[bytes]:
 def _name(name: bytes, data: bytes, strings: int) -> str:
     """Up to eight characters in place, or where they are in the table of strings."""
     if name[:4] == bytes(4):
-        begin = strings + int.from_bytes(name[4:], "little")
+        begin = strings + int.from_bytes(name[4:8], "little")
         name = data[begin : data.index(0, begin)]
     return name.rstrip(b"\0").decode("ascii", "replace")
 

@@ -1,21 +1,20 @@
-"""Which line of which source file an address comes from: the line programs of DWARF 2 to 4 (section .debug_line).
+"""Which line of which source file an address comes from: the line programs of DWARF 2 to 5 (section .debug_line).
 
 cl2000 writes them with `-g`, and without too much optimisation; addresses are those of the C28x, which count words.
-Source: the DWARF standard, versions 2 to 4, section on line number information.
+Source: the DWARF standard, versions 2 to 5, section on line number information.
 """
 
 from __future__ import annotations
 
 import bisect
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import NamedTuple
 
+from stillspin.flash import debug_head
+from stillspin.flash.debug_head import Head, Strings
 from stillspin.flash.octets import Octets
 
-_VERSIONS = range(2, 5)
-_WITH_OPERATIONS = 4
-"""The first version whose head has the operations of an instruction."""
+NO_STRINGS = Strings()
 _WIDE = 0xFFFFFFF0
 """From here on a length stands for 64-bit DWARF, which no compiler of this chip writes."""
 
@@ -68,12 +67,12 @@ class Lines:
         ]
 
 
-def read(section: bytes) -> Lines:
+def read(section: bytes, strings: Strings = NO_STRINGS) -> Lines:
     """The lines of a section. What is of another version, or damaged, is left out."""
     rows: list[Row] = []
     for unit in _units(section):
         try:
-            rows += _unit(unit)
+            rows += _unit(unit, strings)
         except (IndexError, ValueError):
             continue
     return Lines(rows)
@@ -89,51 +88,10 @@ def _units(section: bytes) -> Iterator[bytes]:
         at += 4 + length
 
 
-@dataclass
-class _Head:
-    step: int
-    line_base: int
-    line_range: int
-    lengths: list[int]
-    """Operands of the standard opcodes, 1 and on."""
-    files: list[str]
-
-
-def _head(octets: Octets) -> _Head:
-    version = octets.number(2)
-    if version not in _VERSIONS:
-        raise ValueError(f"version {version}")
-    begins = octets.number(4)
-    begins += octets.at
-    step = octets.number(1)
-    if version >= _WITH_OPERATIONS:
-        octets.number(1)  # operations of an instruction: one, the C28x is no VLIW
-    octets.number(1)  # whether a row begins a statement at first
-    line_base = octets.signed(1)
-    line_range, base = octets.number(1), octets.number(1)
-    lengths = [octets.number(1) for _ in range(1, base)]
-    folders = list(_folders(octets))
-    files = list(_files(octets, folders))
-    octets.at = begins
-    return _Head(step, line_base, line_range, lengths, files)
-
-
-def _folders(octets: Octets) -> Iterator[str]:
-    while name := octets.text():
-        yield name
-
-
-def _files(octets: Octets, folders: list[str]) -> Iterator[str]:
-    while name := octets.text():
-        folder, _, _ = octets.unsigned_leb(), octets.unsigned_leb(), octets.unsigned_leb()
-        name = name.replace("\\", "/")
-        yield f"{folders[folder - 1]}/{name}".replace("\\", "/") if 0 < folder <= len(folders) else name
-
-
 class _Machine:
     """The state of a line program and what its opcodes do to it."""
 
-    def __init__(self, head: _Head) -> None:
+    def __init__(self, head: Head) -> None:
         self.head = head
         self.rows: list[Row] = []
         self.reset()
@@ -142,9 +100,7 @@ class _Machine:
         self.address, self.file, self.line = 0, 1, 1
 
     def row(self) -> None:
-        files = self.head.files
-        name = files[self.file - 1] if 0 < self.file <= len(files) else "?"
-        self.rows.append(Row(self.address, Source(name, self.line)))
+        self.rows.append(Row(self.address, Source(self.head.files.get(self.file, "?"), self.line)))
 
     def special(self, opcode: int) -> None:
         adjusted = opcode - len(self.head.lengths) - 1
@@ -181,9 +137,9 @@ class _Machine:
         octets.at = end
 
 
-def _unit(unit: bytes) -> list[Row]:
+def _unit(unit: bytes, strings: Strings) -> list[Row]:
     octets = Octets(unit)
-    machine = _Machine(_head(octets))
+    machine = _Machine(debug_head.read(octets, strings))
     while octets.at < len(unit):
         opcode = octets.number(1)
         if opcode > len(machine.head.lengths):

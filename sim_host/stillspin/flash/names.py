@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import zip_longest
 from pathlib import Path
 
 from stillspin.errors import InputError, did_you_mean
-from stillspin.flash import coff, debug_lines, elf
+from stillspin.flash import coff, coff_lines, debug_lines, elf
+from stillspin.flash.debug_head import Strings
 from stillspin.flash.debug_lines import Lines, Source
 
-_LINES = ".debug_line"
+_LINES, _LINE_STRINGS, _STRINGS = ".debug_line", ".debug_line_str", ".debug_str"
 
 
 @dataclass(frozen=True)
@@ -68,11 +70,21 @@ def read(file: Path) -> Names:
     if kind is None:
         return Names()
     try:
-        read_lines = (debug_lines.read(section) for section in kind.section(data, _LINES))
-        lines = next((some for some in read_lines if some), Lines([]))
+        lines = _lines(data, kind.section)
+        if not lines and kind is coff:
+            lines = coff_lines.read(data)
         return Names(kind.functions(data), kind.addresses(data), lines)
     except (struct.error, ValueError):
         return Names()
+
+
+def _lines(data: bytes, section: Callable[[bytes, str], Iterator[bytes]]) -> Lines:
+    """Those of DWARF. All sections of a file have their octets in words in the same way."""
+    parts = (section(data, name) for name in (_LINES, _LINE_STRINGS, _STRINGS))
+    for program, of_lines, of_all in zip_longest(*parts, fillvalue=b""):
+        if lines := debug_lines.read(program, Strings(of_lines, of_all)):
+            return lines
+    return Lines([])
 
 
 __all__ = ["Lines", "Names", "Source", "read"]
