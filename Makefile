@@ -48,6 +48,7 @@ demo: build ## commission the drive, reproduce the main figures of the first pap
 bench: build ## measure how fast the simulation runs
 	@bash toolchain/setup.sh build bench
 	@$(PYTHON) toolchain/keep.py speed bash toolchain/bench.sh $(BUILD)
+	@$(PYTHON) toolchain/keep.py c28x tests/python/c28x_speed.py build/bench/c28x.json
 
 isr-cost: build ## count the interrupts' instructions on a Cortex-M3 (QEMU): cycles of a period; bit for bit the native run
 	@bash toolchain/setup.sh build cortex

@@ -1,10 +1,13 @@
 """Each form of the instruction table through assembler, disassembler and decoder, and through the core."""
 
+import importlib
 import random
 import re
+import sys
 from collections import defaultdict
 
 import pytest
+from c28x_chip import ROOT
 from c28x_desk import ask, state
 
 from stillspin.c28x.assembler import assemble_line
@@ -201,3 +204,17 @@ def test_a_program_has_labels_values_and_data():
 def test_an_error_names_its_line(line):
     with pytest.raises(InputError, match="line 2"):
         assemble(f"NOP\n{line}\n")
+
+
+def test_the_book_has_every_form():
+    sys.path.insert(0, str(ROOT / "toolchain"))
+    try:
+        made = importlib.import_module("book.c28x").page(ROOT).splitlines()
+    finally:
+        sys.path.remove(str(ROOT / "toolchain"))
+    rows = [line.split(" | ") for line in made[2:]]
+    assert [row[0] for row in rows] == [f"| `{form.syntax}`" for form in FORMS]
+    for row, form in zip(rows, FORMS, strict=True):
+        bits = row[1].strip("`").replace(" ", "")
+        assert len(bits) == 16 * form.words
+        assert int("".join(bit if bit in "01" else "0" for bit in bits), 2) == form.opcode

@@ -1,5 +1,6 @@
 """Small assembly programs on the C28x core; what they should find comes from Python's integers."""
 
+import math
 import random
 
 import pytest
@@ -269,6 +270,60 @@ def test_repeats_cost_a_cycle_each(mac, cycles):
     alone, _, _ = filtered(random.Random(1), "NOP", "NOP", count=1)
     run, _, _ = filtered(random.Random(1), mac, "NOP", count=16)
     assert run.cycles - alone.cycles == cycles - 1
+
+
+# --- a series ---------------------------------------------------------------------------------------------------------
+
+# sin(u pi/2) for u in Q31, by Horner's rule over y = u^2; coefficients and sums are Q30, products of two of them Q28.
+SINE = """
+start:  MOVW DP,#0x200
+        SPM 0
+        CLRC OVM
+        MOVL XT,@u
+        QMPYL ACC,XT,@u
+        MOVL @y,ACC
+        MOVL XAR4,#series
+        MOVB XAR0,#3
+        MOVL ACC,*XAR4++
+next:   MOVL XT,ACC
+        QMPYL ACC,XT,@y
+        LSL ACC,#2
+        ADDL ACC,*XAR4++
+        BANZ next,AR0--
+        MOVL XT,ACC
+        QMPYL ACC,XT,@u         ; Q29
+        LSL ACC,#1
+        MOVL @sine,ACC
+        ESTOP0
+        .org 0x8000
+u:      .long 0
+y:      .long 0
+sine:   .long 0
+series: .long {series}
+"""
+SERIES = [round((-1) ** k * (math.pi / 2) ** (2 * k + 1) / math.factorial(2 * k + 1) * 2**30) for k in (4, 3, 2, 1, 0)]
+SINE_CYCLES = 10 + 4 * (1 + 2 + 1 + 1) + (3 * 4 + 2) + 6
+"""QMPYL into ACC takes 2 cycles, BANZ 4 where it goes back and 2 where it does not, all others 1, ESTOP0 among them."""
+
+
+def sine_of(u):
+    """The same in Python's integers."""
+    y = u * u >> 32
+    total = SERIES[0]
+    for coefficient in SERIES[1:]:
+        total = (total * y >> 32 << 2) + coefficient
+    return (total * u >> 32) << 1
+
+
+@pytest.mark.parametrize("u", [0, 1, -1, 0x12345678, -0x12345678, 0x5A827999, 0x7FFFFFFF, -0x80000000])
+def test_sine_by_its_series(u):
+    text = SINE.format(series=", ".join(map(str, SERIES)))
+    run = Run(text, memory={"U": words_of(u, 2)}, reads=[("SINE", 2)])
+    found = signed(number_of(run.memory[0]), 32)
+    assert found == sine_of(u)
+    left_out = (math.pi / 2) ** 11 / math.factorial(11)
+    assert abs(found / 2**30 - math.sin(u / 2**31 * math.pi / 2)) < left_out + 2e-8
+    assert run.cycles == SINE_CYCLES
 
 
 # --- pointers ---------------------------------------------------------------------------------------------------------

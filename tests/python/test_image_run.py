@@ -17,7 +17,9 @@ from stillspin import cli, core
 from stillspin.cases import profile, scenario_file, variant
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
+from stillspin.hil import built
 from stillspin.image import closed_loop, opened
+from stillspin.link.errors import NoAnswerError
 from stillspin.measure import figures, pieces
 from stillspin.runs import execute
 from stillspin.runs.execute import Settings
@@ -189,3 +191,40 @@ def test_an_image_that_begins_nowhere_is_refused(tmp_path):
     file.write_bytes(b"")
     with pytest.raises(InputError):
         opened.read(file)
+
+
+def test_time_in_a_scenario(cli_runs, control, monkeypatch):
+    """Of the stretch behind the start procedure: each interrupt of the control program, at its rate."""
+    short = scenario_file.load("A10")
+    run = replace(short.runs[0], duration=0.1)
+    monkeypatch.setattr(scenario_file, "load", lambda _: replace(short, runs=(run,)))
+    done = cli_runs("image", "time", str(control), "A10", "--functions", "3")
+    assert done.exit_code == ExitCode.DONE
+    assert "A10, run creep:" in done.stdout
+    (row,) = [line.split() for line in done.stdout.splitlines() if line.startswith("INT1.1 sample")]
+    assert int(row[2]) == 2000
+    done = cli_runs("image", "time", str(control), "A10", "--for", "1")
+    assert done.exit_code == ExitCode.BAD_INPUT
+    assert "--for, --after" in done.stderr
+
+
+def test_a_whole_drive_s_interrupts_are_timed_from_its_start_on(monkeypatch):
+    """The looks come in their order, once each, and the first at the end of the start procedure."""
+    seen = []
+    wanted = job(duration=0.1)
+    board = firmware(wanted)
+    looks = (lambda b: seen.append(("begins", b.now)), lambda b: seen.append(("ends", b.now)))
+    closed_loop.play_on(board, wanted, None, columns(), looks)
+    assert [word for word, _ in seen] == ["begins", "ends"]
+    assert (seen[1][1] - seen[0][1]) / 1e8 == pytest.approx(0.106, abs=0.001)
+
+
+def test_hil_says_that_it_takes_an_image_of_the_drive(cli_runs, control, monkeypatch):
+    def silent(_):
+        raise NoAnswerError("no answer")
+
+    monkeypatch.setattr(built, "edition_at", silent)
+    done = cli_runs("hil", "A10", "--image", str(control))
+    assert done.exit_code == ExitCode.NO_CONNECTION
+    assert "no image of the drive" in done.stderr
+    assert "stillspin run --image" in done.stderr

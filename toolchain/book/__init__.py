@@ -15,11 +15,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from book import figures, parameters
+from book import c28x, figures, parameters
 from stillspin import exit_codes
 
 PIECES: dict[str, Callable[[Path], str]] = {
     "parameters": parameters.page,
+    "c28x-instructions": c28x.page,
+    "c28x-counts": c28x.counts,
     "exit-codes": lambda _root: exit_codes.table(),
 }
 _PIECE = re.compile(

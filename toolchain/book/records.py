@@ -73,6 +73,7 @@ COMMANDS = {
         (*DRIVE, "tests", "toolchain/mutants.py", "toolchain/mutation"),
     ),
     "speed": Made("make bench", "build/bench/figures.json", RUNS),
+    "c28x": Made("make bench", "build/bench/c28x.json", ("sim_host/chip", "tests/c28x", "tests/python/c28x_speed.py")),
     "pictures": Made(
         "make pictures",
         PICTURES,

@@ -23,6 +23,7 @@ from stillspin.hil.results import Results, Row, begun
 from stillspin.hil.runs import LoopRun
 from stillspin.hil.wish import Wish
 from stillspin.link import address
+from stillspin.link.errors import NoAnswerError
 from stillspin.options import (
     ChangeOption,
     ClusterOption,
@@ -101,7 +102,7 @@ def hil(
             raise InputError("--jobs, --cluster: a board does one run at a time, and is at this computer")
         core.require()  # before anything is asked of the board
         runs.ids(scenarios)
-        core.follow_edition(built.edition_at(board))
+        core.follow_edition(_edition(board, image))
     wish = Wish(tuple(scenarios), check, tuple(only or ()), profile_name, seed, tuple(change or ()), params, scheme)
     everything = wish.runs(core.load())
     if not everything:
@@ -150,6 +151,19 @@ def _executing(context: typer.Context, image: Path, other: str) -> str:
     images.load(image)  # a file that cannot be executed is said to be so before anything starts
     board = context.with_resource(Board(boards.memory(), image))
     return board.wait("serial")
+
+
+def _edition(board: str, image: Path | None) -> str:
+    """Of the drive that is there."""
+    try:
+        return built.edition_at(board)
+    except NoAnswerError as error:
+        if image is None:
+            raise
+        raise NoAnswerError(
+            f"{image}: answers no request of the record protocol, so it is no image of the drive; hil steps one of "
+            "edition hil or lab, and `stillspin run --image` lets any program run under a scenario's load"
+        ) from error
 
 
 def _kind(board: str) -> str:

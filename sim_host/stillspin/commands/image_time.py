@@ -2,23 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import sys
+from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import Console
 
-from stillspin import resources
+from stillspin import core, resources
 from stillspin.board.desk import TICKS_PER_SECOND
 from stillspin.c28x import timed
+from stillspin.cases import profile, scenario_file
+from stillspin.core_board import NativeBoard
 from stillspin.core_code import Interrupt, Spent
 from stillspin.counted import counted
-from stillspin.image import opened, vectors
+from stillspin.errors import InputError
+from stillspin.exit_codes import ExitCode
+from stillspin.image import closed_loop, opened, vectors
 from stillspin.image.opened import Image
-from stillspin.options import ImageArgument, MotorOption, ProfileOption, SeedOption, number
+from stillspin.options import ImageArgument, OtherMotorOption, ProfileOption, SeedOption, number
+from stillspin.report.progress import PhaseBar
+from stillspin.revision import revision
+from stillspin.runs import execute
+from stillspin.runs.execute import Job, Settings
 
 _STACK = 0x0400
 """Where the boot ROM leaves the stack pointer."""
+_USUAL = 0.1
+"""Seconds that it is looked at."""
 _WAITS = ("registers", "data", "fetches")
 
 
@@ -76,7 +89,9 @@ def _say_functions(image: Image, spent: Mapping[int, Spent], most: int) -> None:
 
 def _say_lines(image: Image, spent: Mapping[int, Spent], most: int) -> None:
     if not image.names.lines:
-        print("\nno source lines: the image has no .debug_line of DWARF 2 to 4 (cl2000 -g)")
+        print(
+            "\nno source lines: the image has neither .debug_line of DWARF 2 to 5 (cl2000 -g) nor line numbers of COFF"
+        )
         return
     total = max(sum(cycles for cycles, *_ in spent.values()), 1)
     rows = timed.by_line(image.names.lines, spent)
@@ -87,40 +102,105 @@ def _say_lines(image: Image, spent: Mapping[int, Spent], most: int) -> None:
         print(f"and {len(rows) - most} more (--lines)")
 
 
+class _Looked:
+    """What an image did from a moment on."""
+
+    def __init__(self, image: Image, most: int, lines: int) -> None:
+        self._image, self._most, self._lines = image, most, lines
+
+    def begin(self, board: NativeBoard) -> None:
+        """From now on."""
+        self._before, self._asleep, self._since = board.code(), board.statistics()["idle_ticks"], board.now
+        board.profile()
+
+    def say(self, board: NativeBoard) -> None:
+        """Until now."""
+        seconds = (board.now - self._since) / TICKS_PER_SECOND
+        _say_run(self._image.file, seconds, self._before, board.code(), board.statistics()["idle_ticks"] - self._asleep)
+        spent, interrupts, stack = board.spent()
+        if interrupts:
+            _say_interrupts(self._image, interrupts, board.within(), self._most)
+        _say_functions(self._image, spent, self._most)
+        if self._lines:
+            _say_lines(self._image, spent, self._lines)
+        print(f"stack: up to 0x{stack:04X}, {counted(max(stack - _STACK, 0), 'word')} from 0x{_STACK:04X}")
+
+
+def _jobs(scenarios: Sequence[str], image: Image, profile_name: str, motor: str | None, seed: int) -> list[Job]:
+    native = core.load()
+    schema, known = core.plant_schema(native), core.parameters(native)
+    jobs: list[Job] = []
+    for scenario in map(scenario_file.load, scenarios):
+        chosen = profile.load(profile_name, schema, known, motor or scenario.motor)
+        jobs += execute.prepare(scenario, Settings(chosen, profile.Changes(), seed, revision(), image=image), native)
+    return jobs
+
+
+def _in_scenarios(image: Image, jobs: Sequence[Job], looked: _Looked) -> bool:
+    """Each run in turn; whether all came to their ends."""
+    native = core.load()
+    whole = True
+    for number_of, job in enumerate(jobs):
+        print(f"{'' if number_of == 0 else chr(10)}{job.scenario}, run {job.run.name}:")
+        with PhaseBar(Console(stderr=True)) as bar:
+            show = partial(bar.show, phase=f"{job.scenario} {job.run.name}")
+            played = closed_loop.play(native, job, image, show, (looked.begin, looked.say))
+        for words in played.notes:
+            print(words)
+        if not played.completed:
+            print(f"stillspin: {job.scenario}, run {job.run.name}: broken off: {played.reason}", file=sys.stderr)
+        whole = whole and played.completed
+    return whole
+
+
 def time(
     *,
     file: ImageArgument,
+    scenarios: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[SCENARIO]...", help="What it runs, told over its serial port [default: nothing]."),
+    ] = None,
     seconds: Annotated[
-        float,
-        typer.Option("--for", parser=number("--for", 0.0001, unit="s"), metavar="SECONDS", help="How long to look."),
-    ] = 0.1,
-    after: Annotated[
-        float,
+        float | None,
         typer.Option(
-            "--after", parser=number("--after", 0, unit="s"), metavar="SECONDS", help="From when on, after power-on."
+            "--for",
+            parser=number("--for", 0.0001, unit="s"),
+            metavar="SECONDS",
+            help="How long to look [default: 0.1, or a scenario's length].",
         ),
-    ] = 0.0,
+    ] = None,
+    after: Annotated[
+        float | None,
+        typer.Option(
+            "--after",
+            parser=number("--after", 0, unit="s"),
+            metavar="SECONDS",
+            help="From when on, after power-on [default: 0, or the end of the start procedure].",
+        ),
+    ] = None,
     most: Annotated[int, typer.Option("--functions", min=1, max=10_000, help="List as many functions.")] = 20,
     lines: Annotated[int, typer.Option("--lines", min=0, max=100_000, help="List as many source lines.")] = 0,
     profile_name: ProfileOption = "bench",
-    motor: MotorOption = resources.DEFAULT_MOTOR,
+    motor: OtherMotorOption = None,
     seed: SeedOption = 1,
 ) -> None:
-    """Run an image on the virtual board and say what its interrupts and functions took, in cycles of the CPU."""
+    """Run an image on the virtual board and say what its interrupts and functions took, in cycles of the CPU.
+
+    In a scenario it drives the motor, and is told what to do over its serial port; exit status 1 when a run breaks off.
+    """
     image = opened.read(file)
-    board = opened.power_on(image, profile_name, motor, seed)
+    looked = _Looked(image, most, lines)
+    if scenarios:
+        if seconds is not None or after is not None:
+            raise InputError("--for, --after: a scenario says itself from when and how long; leave them out")
+        if not _in_scenarios(image, _jobs(scenarios, image, profile_name, motor, seed), looked):
+            raise typer.Exit(ExitCode.SHORT)
+        return
+    board = opened.power_on(image, profile_name, motor or resources.DEFAULT_MOTOR, seed)
     try:
-        opened.advance(board, after)
-        before, asleep = board.code(), board.statistics()["idle_ticks"]
-        board.profile()
-        opened.advance(board, seconds)
-        _say_run(file, seconds, before, board.code(), board.statistics()["idle_ticks"] - asleep)
-        spent, interrupts, stack = board.spent()
-        if interrupts:
-            _say_interrupts(image, interrupts, board.within(), most)
-        _say_functions(image, spent, most)
-        if lines:
-            _say_lines(image, spent, lines)
-        print(f"stack: up to 0x{stack:04X}, {counted(max(stack - _STACK, 0), 'word')} from 0x{_STACK:04X}")
+        opened.advance(board, after or 0.0)
+        looked.begin(board)
+        opened.advance(board, _USUAL if seconds is None else seconds)
+        looked.say(board)
     finally:
         board.close()

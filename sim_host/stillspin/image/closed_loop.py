@@ -13,7 +13,7 @@ import struct
 import time
 from array import array
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -109,7 +109,20 @@ class _BrokenOffError(Exception):
     """The run has ended before its time; says why."""
 
 
-def play(native: NativeCore, job: Wanted, image: Image, progress: Progress | None) -> Played:
+Look = Callable[[NativeBoard], None]
+
+
+def _not(_board: NativeBoard) -> None:
+    pass
+
+
+def play(
+    native: NativeCore,
+    job: Wanted,
+    image: Image,
+    progress: Progress | None,
+    looks: tuple[Look, Look] = (_not, _not),
+) -> Played:
     """The run. Never raises for what happens inside it.
 
     Args:
@@ -117,6 +130,7 @@ def play(native: NativeCore, job: Wanted, image: Image, progress: Progress | Non
         job: what is run.
         image: what drives the plant.
         progress: gets the share done (0 … 1); false breaks the run off.
+        looks: at the board when its start procedure is over, and when the run has ended behind it.
 
     Raises:
         InputError: the image cannot be executed.
@@ -125,18 +139,27 @@ def play(native: NativeCore, job: Wanted, image: Image, progress: Progress | Non
     blocks = blocks_of(image.program, str(image.file))
     board = native.VirtualBoard(plant=job.plant, parameters={}, seed=job.seed, image=blocks)
     opened.hook_flash_library(board, image.names)
-    return play_on(board, job, progress, [str(row["name"]) for row in native.signals()])
+    return play_on(board, job, progress, [str(row["name"]) for row in native.signals()], looks)
 
 
-def play_on(board: NativeBoard, job: Wanted, progress: Progress | None, columns: Sequence[str]) -> Played:
+def play_on(
+    board: NativeBoard,
+    job: Wanted,
+    progress: Progress | None,
+    columns: Sequence[str],
+    looks: tuple[Look, Look] = (_not, _not),
+) -> Played:
     """The same on a board that has just been switched on, which is switched off at the end."""
-    loop = _ClosedLoop(board, job, progress or (lambda _: True))
+    loop = _ClosedLoop(board, job, progress or (lambda _: True), looks[0])
     reason = ""
     began = time.perf_counter()
     try:
         loop.carry_out()
     except (_BrokenOffError, StillspinError) as error:
         reason = str(error)
+    try:
+        if loop.begun:
+            looks[1](board)
     finally:
         resets = int(board.statistics()["resets"])
         board.close()
@@ -145,8 +168,8 @@ def play_on(board: NativeBoard, job: Wanted, progress: Progress | None, columns:
 
 
 class _ClosedLoop:
-    def __init__(self, board: NativeBoard, job: Wanted, progress: Progress) -> None:
-        self._board, self._job, self._progress = board, job, progress
+    def __init__(self, board: NativeBoard, job: Wanted, progress: Progress, begins: Look) -> None:
+        self._board, self._job, self._progress, self._begins = board, job, progress, begins
         self._client = SerialClient(board, self._passed, self._event)
         self._truth: dict[str, array[float]] = {name: array("d") for name in _TRUE}
         self._samples: list[_Sample] = []
@@ -158,6 +181,11 @@ class _ClosedLoop:
         self._faults: list[tuple[float, str]] = []
         self._notes: list[str] = []
         self._left = list(job.run.commands)
+
+    @property
+    def begun(self) -> bool:
+        """Whether the start procedure is over."""
+        return self._origin is not None
 
     def carry_out(self) -> None:
         self._client.pass_periods(_BOOT)
@@ -242,6 +270,7 @@ class _ClosedLoop:
     def _begin(self) -> None:
         self._origin = self._client.period
         self._board.begin_run()
+        self._begins(self._board)
 
     def _give_commands(self) -> None:
         while self._table and self._left and self._left[0][0] <= self._now() + 1e-9:
