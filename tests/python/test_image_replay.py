@@ -11,9 +11,11 @@ from c28x_chip import PROGRAMS, linked_file
 from stillspin import core
 from stillspin.board import power
 from stillspin.board.image import blocks_of
-from stillspin.cases import profile
+from stillspin.cases import profile, scenario_file
 from stillspin.errors import InputError
 from stillspin.image import opened, tape
+from stillspin.runs import execute
+from stillspin.runs.execute import Settings
 
 FOR = 0.021
 OCTET = [(0.017, "f0")]
@@ -135,6 +137,49 @@ def test_pins_and_encoder_come_from_the_tape(tmp_path):
     assert again.inputs == recorded.inputs
     without = replace(recorded, inputs=[[], [], [], [], []])
     assert watched(file, without)[1] is not None, "the converter's codes alone do not decide"
+
+
+def of_scenario(identifier, seconds):
+    native = core.load()
+    scenario = scenario_file.load(identifier)
+    chosen = profile.load("bench", core.plant_schema(native), core.parameters(native), scenario.motor)
+    job = execute.prepare(scenario, Settings(chosen, profile.Changes(), 1, ""), native)[0]
+    return replace(job, run=replace(job.run, duration=seconds))
+
+
+@pytest.mark.parametrize("identifier", ["A10", "A12"])
+def test_a_scenario_is_played_back_bit_for_bit(identifier):
+    """The firmware on another plant with other noise, whose shaft nobody loads: A12 has its angle from the encoder."""
+    native = core.load()
+    job = of_scenario(identifier, 0.1)
+    recorded, played = tape.of_run(native, job, None)
+    assert played.completed
+    assert len(recorded.writes) > 10_000
+    for given, same in ((recorded, True), (replace(recorded, inputs=[[], [], [], [], []]), identifier == "A10")):
+        other = {"solver": {"method": "rk4"}, "initial": {"angle": 1.0}}
+        board = native.VirtualBoard(plant=other, parameters={}, seed=9)
+        try:
+            tape.play(board, recorded.seconds, recorded.octets, given)
+            assert (tape.compare(recorded, board) is None) is same
+        finally:
+            board.close()
+
+
+def test_a_run_of_a_scenario_is_chosen(tmp_path):
+    file = tmp_path / "control.tape"
+    image = linked_file(tmp_path, "control")
+    done = run_command("record", file, "--image", image, "--scenario", "A10", "--run", "creep", "--for", "0.05")
+    assert done.returncode == 0, done.stderr
+    assert "answers no request" in done.stdout
+    assert run_command("replay", image, file, "--seed", "5").returncode == 0
+    for words, says in (
+        (("--scenario", "A10", "--run", "none"), "it has creep"),
+        (("--run", "creep"), "--scenario"),
+        (("--scenario", "A10", "--send", "0.1:x"), "leave it out"),
+    ):
+        done = run_command("record", file, *words)
+        assert done.returncode == 2
+        assert says in done.stderr
 
 
 def run_command(*words):

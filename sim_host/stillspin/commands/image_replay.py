@@ -3,23 +3,32 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import Console
 
 from stillspin import core, resources
 from stillspin.board import power
-from stillspin.cases import profile
+from stillspin.cases import profile, scenario_file
 from stillspin.core_board import NativeBoard
 from stillspin.counted import counted
-from stillspin.errors import InputError
+from stillspin.errors import CampaignError, InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.image import opened
 from stillspin.image import tape as tapes
 from stillspin.image.opened import Image
-from stillspin.image.tape import Difference, Octets
-from stillspin.options import ImageArgument, MotorOption, ProfileOption, SeedOption, number
+from stillspin.image.tape import Difference, Octets, Tape
+from stillspin.options import ImageArgument, MotorOption, OtherMotorOption, ProfileOption, SeedOption, number
+from stillspin.report.progress import PhaseBar
+from stillspin.revision import revision
+from stillspin.runs import execute
+from stillspin.runs.execute import Job, Settings
+
+_USUAL = 0.1
+"""Seconds that are recorded."""
 
 
 def _octets(texts: list[str]) -> list[Octets]:
@@ -43,6 +52,31 @@ def _firmware(profile_name: str, motor: str, seed: int) -> NativeBoard:
     return power.power(native, chosen, profile.Changes(), seed)
 
 
+def _job(identifier: str, only: str | None, image: Image | None, where: tuple[str, str | None, int]) -> Job:
+    """A run of a scenario: profile, motor and seed as given."""
+    native = core.load()
+    scenario = scenario_file.load(identifier)
+    profile_name, motor, seed = where
+    schema, known = core.plant_schema(native), core.parameters(native)
+    chosen = profile.load(profile_name, schema, known, motor or scenario.motor)
+    settings = Settings(chosen, profile.Changes(), seed, revision(), image=image)
+    jobs = {job.run.name: job for job in execute.prepare(scenario, settings, native)}
+    name = only or next(iter(jobs))
+    if name not in jobs:
+        raise InputError(f"--run {name}: {scenario.id} has no such run; it has {', '.join(jobs)}")
+    return jobs[name]
+
+
+def _of_scenario(job: Job) -> Tape:
+    with PhaseBar(Console(stderr=True)) as bar:
+        tape, played = tapes.of_run(core.load(), job, partial(bar.show, phase=f"{job.scenario} {job.run.name}"))
+    for words in played.notes:
+        print(words)
+    if tape is None or not played.completed:
+        raise CampaignError(f"{job.scenario}, run {job.run.name}: broken off, nothing is recorded: {played.reason}")
+    return tape
+
+
 def record(
     *,
     out: Annotated[Path, typer.Argument(metavar="TAPE", help="Where to write what was recorded.")],
@@ -50,27 +84,47 @@ def record(
         Path | None,
         typer.Option("--image", metavar="FILE", help="Of this image instead of the firmware for this computer."),
     ] = None,
+    scenario: Annotated[
+        str | None,
+        typer.Option("--scenario", metavar="ID", help="A run of this scenario, told over the serial port."),
+    ] = None,
+    only: Annotated[
+        str | None, typer.Option("--run", metavar="NAME", help="Which of its runs [default: the first].")
+    ] = None,
     seconds: Annotated[
-        float,
-        typer.Option("--for", parser=number("--for", 0.0001, 100, "s"), metavar="SECONDS", help="How long."),
-    ] = 0.1,
+        float | None,
+        typer.Option(
+            "--for",
+            parser=number("--for", 0.0001, 100, "s"),
+            metavar="SECONDS",
+            help="How long [default: 0.1, or the scenario's run].",
+        ),
+    ] = None,
     send: Annotated[
         list[str] | None,
         typer.Option("--send", metavar="SECONDS:TEXT", help="A line for the serial port at a time. Repeatable."),
     ] = None,
     profile_name: ProfileOption = "bench",
-    motor: MotorOption = resources.DEFAULT_MOTOR,
+    motor: OtherMotorOption = None,
     seed: SeedOption = 1,
 ) -> None:
     """Record what converter, pins and encoder tell on the virtual board, and every write to the ePWM, from power-on."""
     octets = _octets(send or [])
-    board = (
-        opened.power_on(opened.read(file), profile_name, motor, seed) if file else _firmware(profile_name, motor, seed)
-    )
-    try:
-        tape = tapes.play(board, seconds, octets)
-    finally:
-        board.close()
+    image = opened.read(file) if file else None
+    if scenario:
+        if octets:
+            raise InputError("--send: a scenario says itself what is sent; leave it out")
+        job = _job(scenario, only, image, (profile_name, motor, seed))
+        tape = _of_scenario(job if seconds is None else replace(job, run=replace(job.run, duration=seconds)))
+    else:
+        if only:
+            raise InputError(f"--run {only}: is one of a scenario; name that with --scenario")
+        name = motor or resources.DEFAULT_MOTOR
+        board = opened.power_on(image, profile_name, name, seed) if image else _firmware(profile_name, name, seed)
+        try:
+            tape = tapes.play(board, _USUAL if seconds is None else seconds, octets)
+        finally:
+            board.close()
     tapes.save(replace(tape, made_by=file.name if file else "firmware"), out)
     print(f"{out}: {counted(len(tape.samples), 'sample')}, {counted(len(tape.writes), 'write')} to the ePWM")
 

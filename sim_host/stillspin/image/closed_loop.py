@@ -93,6 +93,8 @@ class Played:
     waveform: Mapping[str, Mapping[str, npt.NDArray[Any]]] = field(default_factory=lambda: {"raster": {"time": _NONE}})
     stats: Mapping[str, float] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    sent: list[tuple[float, str]] = field(default_factory=list)
+    """Seconds after power-on, and octets in hexadecimal digits."""
 
 
 _NONE: npt.NDArray[Any] = np.empty(0)
@@ -363,7 +365,7 @@ class _ClosedLoop:
             "simulated_seconds": self._client.period * CONTROL_PERIOD,
             "start_seconds": (self._origin or 0) * CONTROL_PERIOD,
         }
-        return Played(signals, not reason, reason, self._faults, stats=stats, notes=notes)
+        return Played(signals, not reason, reason, self._faults, stats=stats, notes=notes, sent=self._client.sent)
 
     def _rows(self, origin: int) -> tuple[dict[str, npt.NDArray[Any]], list[str]]:
         truth = {name: np.frombuffer(column, dtype=np.float64) for name, column in self._truth.items()}

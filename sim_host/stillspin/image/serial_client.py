@@ -32,6 +32,7 @@ class SerialClient:
     Attributes:
         period: how many have passed since the board was switched on.
         refused: what the drive said no to of what it was told.
+        sent: when what was sent, as a tape has it.
     """
 
     def __init__(self, board: NativeBoard, passed: Callable[[], None], event: Callable[[Record], None]) -> None:
@@ -44,6 +45,7 @@ class SerialClient:
         """
         self.period = 0
         self.refused: list[str] = []
+        self.sent: list[tuple[float, str]] = []
         self._board, self._passed, self._event = board, passed, event
         self._splitter = Splitter()
         self._tag = 0
@@ -77,7 +79,7 @@ class SerialClient:
         record = self._record(kind, body)
         self._answer = None
         for _ in range(_TRIES if kind in REPEATABLE else 1):
-            self._board.serial_write(to_wire(record))
+            self._send(record)
             for _ in range(_PATIENCE):
                 self.pass_periods(1)
                 if self._answer:
@@ -88,7 +90,12 @@ class SerialClient:
         """Ask, and do not wait; what is refused is noted, with these words."""
         record = self._record(kind, body)
         self._told[record.tag] = words
-        self._board.serial_write(to_wire(record))
+        self._send(record)
+
+    def _send(self, record: Record) -> None:
+        octets = to_wire(record)
+        self.sent.append((self._board.now / TICKS_PER_SECOND, octets.hex()))
+        self._board.serial_write(octets)
 
     def _record(self, kind: Request, body: bytes) -> Record:
         self._tag = (self._tag + 1) % _TAGS

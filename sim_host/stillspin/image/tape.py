@@ -15,10 +15,15 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
 
+from stillspin.board.desk import TICKS_PER_SECOND
+from stillspin.board.image import blocks_of
+from stillspin.core import NativeCore, Progress
 from stillspin.core_board import NativeBoard
 from stillspin.core_code import Change
 from stillspin.errors import InputError
-from stillspin.image import opened
+from stillspin.image import closed_loop, opened
+from stillspin.image.closed_loop import Played
+from stillspin.runs.execute import Job
 
 _FORMAT = 2
 _MODULES = range(0x6800, 0x6980)
@@ -91,6 +96,28 @@ def play(board: NativeBoard, seconds: float, octets: Sequence[Octets], given: Ta
     opened.advance(board, seconds - at)
     samples, writes, inputs = board.taped()
     return Tape(seconds, samples, [write[:3] for write in writes], list(octets), "", inputs)
+
+
+def of_run(native: NativeCore, job: Job, progress: Progress | None) -> tuple[Tape | None, Played]:
+    """Let a board run a scenario, told over its serial port, and record it from power-on; no tape where it never began.
+
+    Args:
+        native: the native module.
+        job: of an image, or of the firmware where it has none.
+        progress: gets the share done (0 … 1); false breaks the run off.
+    """
+    made: list[tuple[float, list[int], list[tuple[int, int, int, int]], list[list[Change]]]] = []
+    blocks = blocks_of(job.image.program, str(job.image.file)) if job.image else []
+    board = native.VirtualBoard(plant=job.plant, parameters={}, seed=job.seed, image=blocks)
+    if job.image:
+        opened.hook_flash_library(board, job.image.names)
+    board.tape([])
+    looks = (lambda _: None, lambda b: made.append((b.now / TICKS_PER_SECOND, *b.taped())))
+    played = closed_loop.play_on(board, job, progress, [str(row["name"]) for row in native.signals()], looks)
+    if not made:
+        return None, played
+    seconds, samples, writes, inputs = made[0]
+    return Tape(seconds, samples, [write[:3] for write in writes], played.sent, "", inputs), played
 
 
 def compare(tape: Tape, board: NativeBoard) -> Difference | None:
