@@ -138,7 +138,7 @@ def test_a_program_without_the_protocol_runs_under_the_load(control):
     seen = closed_loop.play(core.load(), wanted, wanted.image, None)
     assert seen.completed
     assert "answers no request of the record protocol" in seen.notes[0]
-    assert "18 parameters, the start, 1 reference or commands" in seen.notes[0]
+    assert "18 parameters, the start, 1 step (references, commands)" in seen.notes[0]
     assert seen.signals["load_torque"][-1] == pytest.approx(0.5)
     assert np.isnan(seen.signals["est_angle"]).all()
     assert seen.signals["true_speed"][-1] < -100, "nothing holds the shaft against the load"

@@ -218,7 +218,7 @@ class _ClosedLoop:
             words.append(counted(len(self._job.parameters), "parameter"))
         words.append("the start")
         if run.commands:
-            words.append(counted(len(run.commands), "reference") + " or commands")
+            words.append(counted(len(run.commands), "step") + " (references, commands)")
         self._notes.append(
             "the image answers no request of the record protocol at 115200 bit/s (IDENTITY, asked three times): "
             f"{', '.join(words)} could not be given to it and its own signals not be read; it ran under the "
