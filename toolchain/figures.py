@@ -39,6 +39,8 @@ _PAPER_B = "reproduce B14 B15 B16 B17 B18 B19 B20 B21"
 _NOISE = "--profile build/figures/ideal-noise.toml"  # as `stillspin run ID --profile ideal --set adc.noise=1.2`
 _LOW_PASS = "toolchain/book/cases/paper_flux_low_pass.toml"
 _ALONE = "--no-paper-scheme --no-nameplate --out OUT"
+_TRIPS = "round-trips --may-lose 1"
+_MAKE_THEIR_OWN = ("reproduce", "drift", "explain", "round-trips")  # the directory, whole or not at all
 
 PAPERS = (
     Step("papers-a-ideal", f"{_PAPER_A} --profile ideal {_ALONE}", is_long=True),
@@ -48,6 +50,11 @@ PAPERS = (
     Step("papers-b-noise", f"{_PAPER_B} --scheme paper_flux {_NOISE} {_ALONE}", is_long=True),
     Step("papers-b-bench", f"{_PAPER_B} --scheme paper_flux {_ALONE}", is_long=True),
     Step("papers-b-low-pass", f"{_PAPER_B} --scheme {_LOW_PASS} --profile ideal {_ALONE}", is_long=True),
+    Step("papers-trips-ideal", f"{_TRIPS} --scheme paper --profile ideal --out OUT", is_long=True),
+    Step("papers-trips-noise", f"{_TRIPS} --scheme paper --profile ideal --set adc.noise=1.2 --out OUT", is_long=True),
+    Step("papers-trips-bench", f"{_TRIPS} --scheme paper --out OUT", is_long=True),
+    Step("trips-ideal", f"{_TRIPS} --profile ideal --out OUT", is_long=True),
+    Step("trips-bench", f"{_TRIPS} --out OUT", is_long=True),
 )
 """The papers' own drives."""
 
@@ -95,7 +102,7 @@ def carry_out(step: Step, made_of: str) -> bool:
     out = WORK / step.name
     if "--resume" not in step.command:
         shutil.rmtree(out, ignore_errors=True)  # what an earlier run left is no result of this one
-    if not step.command.startswith(("reproduce", "drift", "explain")):  # these make it, whole or not at all
+    if not step.command.startswith(_MAKE_THEIR_OWN):
         out.mkdir(parents=True, exist_ok=True)
     arguments = [word.replace("OUT", str(out)) for word in step.command.split()]
     log = WORK / f"{step.name}.log"

@@ -37,6 +37,7 @@ BAD = {
     "commission": ("commission", "--profile", "bnch"),
     "board": ("board", "--profile", "bnch"),
     "startup-matrix": ("startup-matrix", "--way", "sideways"),
+    "round-trips": ("round-trips", "--runs", "0"),
     "params dump": ("params", "dump"),
     "params diff": ("params", "diff", "defaults"),
     "params load": ("params", "load", "x.toml"),

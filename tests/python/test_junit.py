@@ -94,7 +94,7 @@ def test_what_was_done_is_there_after_an_interrupt(tmp_path, core, monkeypatch):
 
 @pytest.mark.parametrize(
     "command",
-    [COMMAND, ["startup-matrix", "--quick"], ["hil", "A10", "--port", "virtual"]],
+    [COMMAND, ["startup-matrix", "--quick"], ["round-trips"], ["hil", "A10", "--port", "virtual"]],
 )
 def test_a_path_that_cannot_be_written_is_said_first(tmp_path, core, monkeypatch, command):
     def never(*_, **__):

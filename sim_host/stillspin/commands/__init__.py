@@ -18,6 +18,7 @@ from stillspin.commands import (
     monitor,
     motor,
     params,
+    round_trips,
     schema,
     scope,
     startup,
@@ -34,6 +35,7 @@ def register(app: typer.Typer) -> None:
     app.command(name="commission")(commission.commission)
     app.command(name="board")(board.board)
     app.command(name="startup-matrix")(startup.startup_matrix)
+    app.command(name=round_trips.NAME)(round_trips.round_trips)
     app.add_typer(params.app, name="params")
     app.add_typer(motor.app, name="motor")
     app.add_typer(image.app, name="image")
