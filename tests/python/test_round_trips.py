@@ -53,7 +53,7 @@ def test_the_papers_scheme_goes_and_comes_back_both_ways(tmp_path):
 
 
 def test_a_lost_trip_is_said_and_counts_against_what_may_be_lost(tmp_path):
-    words = ("--runs", "1", "--scheme", "paper", "--set", "current_limit=1")
+    words = ("--runs", "1", "--scheme", "paper", "--set", "mechanics.inertia=0.05")
     done = call(tmp_path / "r", *words)
     assert done.exit_code == 1, done.output
     assert "1 of 1 trip lost" in done.stdout
