@@ -28,6 +28,7 @@ BUILD = ROOT / "build" / "mcdc"
 UNREACHABLE = ROOT / "toolchain" / "mcdc_unreachable.txt"
 FLOORS = ("hal", "control", "svpwm", "estimators", "firmware")
 OLDEST = 18  # clang
+PROGRAM = re.compile(r"\w+_test(_[a-z]+)?")
 # Places in an entry of llvm-cov's export.
 TRUE, FALSE, FILE, KIND = 4, 5, 6, 8
 OF_SEVERAL = 6  # the kind of a branch whose decision has several conditions
@@ -139,9 +140,9 @@ def run_tests(clang: str, profdata: str, runtime: Path) -> None:
 
 
 def programs() -> list[Path]:
-    """The test programs."""
-    found = (path for path in (BUILD / "tests").rglob("*_test") if path.is_file() and os.access(path, os.X_OK))
-    return sorted(found)
+    """The test programs, those of other editions among them."""
+    found = (path for path in (BUILD / "tests").rglob("*_test*") if PROGRAM.fullmatch(path.name))
+    return sorted(path for path in found if path.is_file() and os.access(path, os.X_OK))
 
 
 def export(cov: str) -> dict[str, Any]:

@@ -25,6 +25,10 @@ RUNS = (
     ),
     *(f"sim_host/stillspin/{name}" for name in ("cases", "measure", "runs")),
 )
+# The C++ tests in which the drive's C runs.
+TESTS = tuple(
+    f"tests/{name}" for name in ("bench", "control", "estimators", "firmware", "fuzz", "hal", "qmath", "svpwm")
+)
 UNKNOWN = "unknown"
 """Sources of a record whose figures were taken from an older page."""
 
@@ -66,11 +70,11 @@ COMMANDS = {
     "prove": Made(
         "make prove", "build/prove/figures.json", (*DRIVE, "tests/prove", "toolchain/prove.py", "toolchain/proof")
     ),
-    "mcdc": Made("make mcdc", "build/mcdc/figures.json", (*DRIVE, "tests", "toolchain/mcdc.py")),
+    "mcdc": Made("make mcdc", "build/mcdc/figures.json", (*DRIVE, *TESTS, "toolchain/mcdc.py")),
     "mutants": Made(
         'make mutants SAMPLE="20 near seed=47"',
         "build/mutants/figures.json",
-        (*DRIVE, "tests", "toolchain/mutants.py", "toolchain/mutation"),
+        (*DRIVE, *TESTS, "toolchain/mutants.py", "toolchain/mutation"),
     ),
     "speed": Made("make bench", "build/bench/figures.json", RUNS),
     "c28x": Made("make bench", "build/bench/c28x.json", ("sim_host/chip", "tests/c28x", "tests/python/c28x_speed.py")),
