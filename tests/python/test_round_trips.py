@@ -35,11 +35,21 @@ def test_more_trips_begin_with_those_of_fewer():
     assert round_trips.trips(5, 3).runs == round_trips.trips(9, 3).runs[:5]
 
 
+@pytest.mark.parametrize(("lost", "count"), [(0, 50), (1, 50), (7, 20), (20, 20)])
+def test_the_interval_is_where_the_count_is_196_deviations_off(lost, count):
+    """Wilson's ends solve (lost/n − p)² = 1.96² p (1 − p)/n."""
+    low, high = (end / 100.0 for end in round_trips.interval(lost, count))
+    assert 0.0 <= low < high <= 1.0
+    assert low - 1e-12 <= lost / count <= high + 1e-12
+    for end in (low, high):
+        assert (lost / count - end) ** 2 == pytest.approx(1.96**2 * end * (1.0 - end) / count, abs=1e-12)
+
+
 def test_the_papers_scheme_goes_and_comes_back_both_ways(tmp_path):
     out = tmp_path / "r"
     done = call(out, "--runs", "2", "--scheme", "paper", "--junit", str(tmp_path / "j.xml"))
     assert done.exit_code == 0, done.output
-    assert "0 of 2 trips lost" in done.stdout
+    assert "0 of 2 trips lost (0.0 to 65.8 % at 95 %)" in done.stdout
     found = json.loads((out / "trips.json").read_text())
     assert (found["trips"], found["lost"]) == (2, [])
     assert 0.5 < found["position_error_peak"] < 20.0  # the hybrid's: the observer stays below half a degree
