@@ -85,8 +85,11 @@ def intel_hex(blocks):
     return "".join([*lines, ":00000001FF\n"]).encode()
 
 
-def coff(blocks, entry=0x3F7FF6, *, target=0x009D, flags=0x1103):
-    """An executable; one section is without content, as .ebss, and one a dummy."""
+def coff(blocks, entry=0x3F7FF6, *, target=0x009D, flags=0x1103, heads_of=lambda address: (address, address)):
+    """An executable; one section is without content, as .ebss, and one a dummy.
+
+    heads_of: the two addresses in the head of a section that is loaded to one.
+    """
     empty = (b".ebss", 0x8000, 100, 0, 0x80)
     dummy = (b"dummy", 0x9000, 1, 1, 1)
     count = len(blocks) + 2
@@ -97,7 +100,8 @@ def coff(blocks, entry=0x3F7FF6, *, target=0x009D, flags=0x1103):
     for index, block in enumerate(blocks):
         name, at = f"sect{index}".encode(), raw + len(content)
         size = len(block.words)
-        heads += struct.pack("<8sIIIIIIIIIHH", name, block.address, block.address, size, at, 0, 0, 0, 0, 0x20, 0, 0)
+        both = heads_of(block.address)
+        heads += struct.pack("<8sIIIIIIIIIHH", name, *both, size, at, 0, 0, 0, 0, 0x20, 0, 0)
         content += b"".join(map(word, block.words))
     head = struct.pack("<HHIIIHHH", 0x00C2, count, 0, 0, 0, 28, flags, target)
     optional = struct.pack("<HHIIIIII", 0x0108, 0, 0, 0, 0, entry, 0, 0)

@@ -50,6 +50,18 @@ def test_every_format_gives_the_same_image(file, name):
     assert image.size == 4 * 8 + 22
 
 
+@pytest.mark.parametrize("order", [1, -1])
+def test_coff_section_that_runs_from_ram_is_loaded_to_the_flash(order):
+    data = make.coff(IMAGE, heads_of=lambda address: (0x8000 + address % 0x4000, address)[::order])
+    assert coff.read(data, "image").blocks == coff.read(FORMATS["coff"], "image").blocks
+
+
+def test_coff_section_that_is_loaded_elsewhere_than_it_runs_has_its_load_address_second():
+    blocks = [Block(0x9000, (1, 2, 3))]
+    data = make.coff(blocks, heads_of=lambda address: (0x3FA000, address))
+    assert [block.address for block in coff.read(data, "image").blocks] == [0x9000]
+
+
 def test_words_of_hex_are_counted_as_hex2000_counts_them(file):
     # Word addresses, high octet first: 0x3E8002 has 0xDF98.
     program = read_program(file(b":02000004003EBC\n:04800200DF98000003\n:00000001FF\n"))

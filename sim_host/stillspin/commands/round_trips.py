@@ -105,7 +105,7 @@ def _say(found: dict[str, Any], out: Path) -> None:
 
 
 def _cases(results: Sequence[ScenarioResult]) -> list[junit.TestCase]:
-    return [case for result in results for case in junit.of_scenario(result)]
+    return [case for result in results for case in junit.of_scenario(result, NAME)]
 
 
 def round_trips(

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from stillspin.errors import InputError
+from stillspin.flash import layout
 from stillspin.flash.program import Block, Program, assemble
 
 MAGIC = b"\xc2\x00"
@@ -59,9 +60,20 @@ def _loaded(data: bytes, count: int, optional: int) -> Iterator[tuple[int, int, 
     """Of every section that is loaded: its address, its words, and where they are in the file."""
     for index in range(count):
         at = _HEADER.size + optional + index * _SECTION.size
-        _, load, _, size, raw, _, _, _, _, kind, _, _ = _SECTION.unpack_from(data, at)
+        _, physical, virtual, size, raw, _, _, _, _, kind, _, _ = _SECTION.unpack_from(data, at)
         if size and raw and not kind & _NOT_LOADED:
-            yield load, size, raw
+            yield _load_and_run(physical, virtual)[0], size, raw
+
+
+def _load_and_run(physical: int, virtual: int) -> tuple[int, int]:
+    """Where a section is loaded and where it runs, of the two addresses that its head has.
+
+    TI's loaders take the first to run at and the second to load to. No cl2000 was at hand to see it, so it does not
+    hang on that where it matters: what is copied to RAM at the start lies in the flash.
+    """
+    if physical in layout.FLASH and virtual not in layout.FLASH:
+        return physical, virtual
+    return virtual, physical
 
 
 def functions(data: bytes) -> dict[int, str]:
@@ -147,9 +159,9 @@ def line_tables(data: bytes) -> Iterator[tuple[int, int, bytes]]:
     count, optional = _HEADER.unpack_from(data)[1], _HEADER.unpack_from(data)[5]
     for index in range(count):
         at = _HEADER.size + optional + index * _SECTION.size
-        _, _, run, size, _, _, where, _, entries, _, _, _ = _SECTION.unpack_from(data, at)
+        _, physical, virtual, size, _, _, where, _, entries, _, _, _ = _SECTION.unpack_from(data, at)
         if where and entries:
-            yield run, size, data[where : where + entries * _LINE_SIZE]
+            yield _load_and_run(physical, virtual)[1], size, data[where : where + entries * _LINE_SIZE]
 
 
 def section(data: bytes, wanted: str) -> Iterator[bytes]:

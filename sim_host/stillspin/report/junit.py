@@ -117,20 +117,21 @@ def _clean(text: str) -> str:
     return "".join(sign if sign.isprintable() or sign in "\n\t" else "?" for sign in text)
 
 
-def of_scenario(result: ScenarioResult) -> Iterator[TestCase]:
-    """Every run, and every figure that has a goal; seconds are the drive's."""
+def of_scenario(result: ScenarioResult, classname: str = "") -> Iterator[TestCase]:
+    """Every run, and every figure that has a goal; seconds are the drive's. `classname`: where it is no scenario's."""
     scenario = result.scenario
+    classname = classname or f"reproduce.{scenario.id}"
     for outcome in result.outcomes:
         kind = "" if not outcome.broken else "error" if outcome in result.broken else "skipped"
         seconds = outcome.stats.get("simulated_seconds", 0.0)
-        yield TestCase(f"reproduce.{scenario.id}", f"run {outcome.run}", seconds, kind, outcome.broken or "")
+        yield TestCase(classname, f"run {outcome.run}", seconds, kind, outcome.broken or "")
     for figure in result.figures:
         if figure.goal is None:
             continue
         found = "no value" if figure.value is None else f"{figure.value:g} {figure.unit}".rstrip()
         words = "" if figure.met else f"{found}, the goal is at most {figure.goal:g} {figure.unit}".rstrip()
         kind = "" if figure.met else "failure"
-        yield TestCase(f"reproduce.{scenario.id}", figure.name, 0.0, kind, words, figure.note)
+        yield TestCase(classname, figure.name, 0.0, kind, words, figure.note)
 
 
 def of_refused(words: str) -> TestCase:
