@@ -2,6 +2,7 @@
 
 import flash_files
 import pytest
+from c28x_chip import linked_file, program
 from typer.testing import CliRunner
 
 from stillspin import cli
@@ -76,6 +77,17 @@ def test_code_is_listed_as_instructions(tmp_path):
         "0x3F400A  00FF       .word 0x00ff",
     ]
     assert show(tmp_path, blocks(), "--code", "0x3F4004", "--lines", "2")[1] == lines[2:4]
+
+
+def test_a_whole_program_is_shown(tmp_path):
+    control = program("control")
+    command = ["image", "show", str(linked_file(tmp_path, "control"))]
+    result = CliRunner().invoke(cli.app, command)
+    assert result.exit_code == 0
+    assert f"{len(control.words)} words, entry 0x3F7FF6" in result.stdout.splitlines()[0]
+    at = control.symbols["SAMPLE"]
+    listed = CliRunner().invoke(cli.app, [*command, "--code", hex(at), "--lines", "4"]).stdout.splitlines()
+    assert listed[0].split()[2:] == ["SETC", "SXM"]
 
 
 @pytest.mark.parametrize(
