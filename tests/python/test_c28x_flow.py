@@ -209,6 +209,12 @@ def test_priorities_are_those_of_the_vector_table():
     assert run.memory[0] == [16, *range(1, 16), 0]
 
 
+@pytest.mark.parametrize("count", [2, 3, 20000])
+def test_rpt_behind_rpt_repeats_nothing(count):
+    run = Run(".org 0x2000\nstart: MOVB ACC,#1\n" + " RPT #7\n" * count + " ADDU ACC,@AL\n ESTOP0")
+    assert run.registers["acc"] == (2 if count % 2 == 0 else 256)
+
+
 def test_interrupts_wait_for_ier_and_intm_and_for_the_end_of_a_repeat():
     body = "start: EINT\n RPT #99\n || ADDB AL,#0\n NOP\n RPT #99\n || NOP\n ESTOP0"
     masked = Run(with_vectors("start: NOP\n ESTOP0", int1="MOVB XAR5,#1"), requests=[1], registers={"ier": 1})

@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from c28x_chip import MILLISECOND, blocks, program
+from c28x_chip import MILLISECOND, blocks, linked_file, program
 from flash_files import coff, intel_hex
 
 from stillspin import core
@@ -116,7 +116,25 @@ def test_functions_reach_to_the_next_name():
         ("two", (11, 0, 2, 5), 3, 3),
         ("one", (4, 3, 0, 0), 1, 3),
     ]
-    assert timed.elsewhere(there, spent) == (7, 1, 2, 3)
+    assert timed.elsewhere(rows, spent) == (7, 1, 2, 3)
+
+
+def test_a_function_that_runs_from_ram_goes_by_its_name():
+    there = Program((Block(0x3F4000, (0x7700, 0x0006, 0x7700, 0x0006)),))
+    spent = {
+        0x3F4000: (4, 0, 0, 0),
+        0x8000: (5, 0, 0, 0),
+        0x8001: (7, 1, 2, 3),
+        0x8010: (9, 0, 0, 0),
+        0x7FFF: (2, 0, 0, 0),
+    }
+    rows = timed.functions(there, {0x3F4000: "main", 0x8000: "control_isr", 0x8010: "helper"}, spent)
+    assert [(row.name, row.cycles, row.copied) for row in rows] == [
+        ("control_isr", 12, True),
+        ("helper", 9, True),
+        ("main", 4, False),
+    ]
+    assert timed.elsewhere(rows, spent) == (2, 0, 0, 0), "below the first name"
 
 
 def test_bars_have_every_value():
@@ -148,6 +166,14 @@ def test_the_command_names_interrupts_and_functions(tmp_path):
     assert any(line.startswith("sample ") and "100%" in line for line in lines)
     assert any(line.startswith("and ") and "more" in line for line in lines)
     assert lines[-1] == "stack: up to 0x0411, 17 words from 0x0400"
+
+
+def test_what_the_virtual_chip_has_not_is_said(tmp_path):
+    source = tmp_path / "rom.asm"
+    body = "start: MOVL XAR7,#0x3FF000\n MOV AL,*XAR7\nstay: B stay,UNC\n"
+    source.write_text(f" .org 0x3F7FF6\n LB start\n .org 0x3F4000\n{body}")
+    done = run_command(linked_file(tmp_path, "rom", [source]), "--for", "0.001")
+    assert done.stdout.splitlines()[-1].startswith("warning: 1 time the program went to what the virtual chip has not")
 
 
 def test_without_names_there_are_addresses(tmp_path):

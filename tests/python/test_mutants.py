@@ -18,6 +18,7 @@ from mutation.mutate import mutants as mutants_of  # noqa: E402
 WITHOUT_MUTANTS = {
     *("firmware/boot/image/main.c", "firmware/flash_kernel/image/main.c", "firmware/lamp/image/main.c"),
     *("hal/f2808/flash.c", "hal/f2808/image/ram_code.c", "hal/f2808/image/kernel_identity.c"),
+    "hal/f2808/image/no_replay.c",
 }
 
 

@@ -74,7 +74,7 @@ SECTIONS
                 libstillspin_firmware.a<modulation.*>(.text:_drive_modulate, .text:_modulate_into, .text:_write_frame)
                 libstillspin_firmware.a<mode.*>(.text:_is_energised)
                 libstillspin_firmware.a<hysteresis.*>(.text:_hysteresis_slice)
-                libstillspin_firmware.a<signals.*>(.text:_phase_current, .text:_look_at_speed)
+                libstillspin_firmware.a<signals.*>(.text:_phase_current)
                 libstillspin_estimators.a<deviation_observer.*>(.text:_deviation_observer_update_is_urgent)
                 libstillspin_estimators.a<regression.*>(.text:_regression_evaluate)
                 libstillspin_estimators.a<deviation.*>(.text)

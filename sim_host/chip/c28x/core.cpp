@@ -60,11 +60,14 @@ void Core::carry_out(const Instruction& i) {
 }
 
 void Core::repeat(std::uint32_t count) {
+  if (is_repeated_) return;  // RPT behind RPT is carried out once, and repeats nothing
   // A copy: the repeated instruction may overwrite the memory that it is in.
   const Instruction repeated = fetch(r.pc);
   const Spent before = spent();
   ++instructions;
+  is_repeated_ = true;
   carry_out(repeated);
+  is_repeated_ = false;
   const std::uint32_t repeats = repeated.repeatable ? count : 0;
   for (repeats_done = 1; repeats_done <= repeats; ++repeats_done, ++cycles) repeated.run(*this, repeated);
   repeats_done = 0;

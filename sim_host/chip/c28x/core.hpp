@@ -153,6 +153,7 @@ class Core : public MappedMemory, public Timing {
 
   std::unique_ptr<Profile> profile_;
   Spent repeated_;  // of what RPT repeats, noted apart from it
+  bool is_repeated_ = false;
   std::unique_ptr<Watch> watch_;
   std::uint64_t until_ = 0;
   std::uint32_t interrupt_cycles_ = 8;

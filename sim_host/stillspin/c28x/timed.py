@@ -25,7 +25,8 @@ class Function:
     end: int
     spent: Spent
     ran: int
-    """Words of instructions that were executed."""
+    """Words of instructions that were executed; unknown of code that was copied to where it ran."""
+    copied: bool = False
 
     @property
     def cycles(self) -> int:
@@ -42,7 +43,7 @@ def added(some: Iterable[Spent]) -> Spent:
 
 
 def functions(program: Program, names: Mapping[int, str], spent: Mapping[int, Spent]) -> list[Function]:
-    """Those that the program has, in the order of their cycles.
+    """Those that the program has, in the order of their cycles; what runs elsewhere than it is loaded goes by its name.
 
     Args:
         program: its words.
@@ -54,6 +55,10 @@ def functions(program: Program, names: Mapping[int, str], spent: Mapping[int, Sp
     for first, following in zip(starts, [*starts[1:], 1 << 22], strict=True):
         block = next((block for block in program.blocks if block.address <= first < block.end), None)
         if block is None:
+            there = [address for address in spent if first <= address < following and program.word(address) is None]
+            if there:
+                took = added(spent[address] for address in there)
+                made.append(Function(names[first], first, max(there) + 1, took, 0, copied=True))
             continue
         end = min(following, block.end)
         there = [address for address in spent if first <= address < end]
@@ -79,9 +84,11 @@ def by_line(lines: Lines, spent: Mapping[int, Spent]) -> list[tuple[Source, Spen
     return sorted(((source, added(counts)) for source, counts in found.items()), key=lambda row: -row[1][0])
 
 
-def elsewhere(program: Program, spent: Mapping[int, Spent]) -> Spent:
-    """What code took that is not where the program has it: copied to RAM, most of all."""
-    return added(count for address, count in spent.items() if program.word(address) is None)
+def elsewhere(rows: Iterable[Function], spent: Mapping[int, Spent]) -> Spent:
+    """What code took that is in none of the rows: copied without a name, or not the program's at all."""
+    everything, known = added(spent.values()), added(row.spent for row in rows)
+    cycles, registers, data, fetches = (of_all - of_rows for of_all, of_rows in zip(everything, known, strict=True))
+    return cycles, registers, data, fetches
 
 
 def histogram(cycles: Sequence[int]) -> Iterator[str]:

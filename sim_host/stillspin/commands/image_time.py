@@ -30,6 +30,9 @@ from stillspin.runs.execute import Job, Settings
 
 _STACK = 0x0400
 """Where the boot ROM leaves the stack pointer."""
+_STACK_NAMES = ("__stack", "___stack")
+"""Of the linker, where the stack begins."""
+_ELSEWHERE = "(code without a name)"
 _USUAL = 0.1
 """Seconds that it is looked at."""
 _WAITS = ("registers", "data", "fetches")
@@ -55,9 +58,15 @@ def _say_interrupts(
         for line in timed.histogram(cycles):
             print(line)
         inside = {address: (count, 0, 0, 0) for address, count in within.get(which, {}).items()}
-        for row in timed.functions(image.program, names, inside)[:most]:
-            if row.cycles:
-                print(f"    {row.name:<32}{row.cycles / len(cycles):>10.1f}   of each in the mean")
+        rows = timed.functions(image.program, names, inside)
+        of_each = [(row.name, row.cycles) for row in rows[:most]]
+        of_each += [
+            ("(the others)", sum(row.cycles for row in rows[most:])),
+            (_ELSEWHERE, timed.elsewhere(rows, inside)[0]),
+        ]
+        for name, count in of_each:
+            if count:
+                print(f"    {name:<32}{count / len(cycles):>10.1f}   of each in the mean")
 
 
 def _shares(spent: Spent, total: int) -> str:
@@ -77,12 +86,13 @@ def _say_functions(image: Image, spent: Mapping[int, Spent], most: int) -> None:
     print(f"\n{'function':<28}{_HEADS}{'ran':>8}   of its words")
     for row in rows[:most]:
         size = row.end - row.first
-        print(f"{row.name:<28}{_shares(row.spent, total)}{100 * row.ran / size:>7.0f}%{size:>8}")
+        share = f"{'copied':>8}" if row.copied else f"{100 * row.ran / size:>7.0f}%{size:>8}"
+        print(f"{row.name:<28}{_shares(row.spent, total)}{share}")
     if len(rows) > most:
         print(f"and {len(rows) - most} more (--functions)")
-    copied = timed.elsewhere(program, spent)
-    if copied[0]:
-        print(f"{'(copied code)':<28}{_shares(copied, total)}")
+    rest = timed.elsewhere(rows, spent)
+    if rest[0]:
+        print(f"{_ELSEWHERE:<28}{_shares(rest, total)}")
     ran = sum(row.ran for row in rows)
     print(f"code that ran: {counted(ran, 'word')} of {program.size} that the image has, data among them")
 
@@ -123,7 +133,11 @@ class _Looked:
         _say_functions(self._image, spent, self._most)
         if self._lines:
             _say_lines(self._image, spent, self._lines)
-        print(f"stack: up to 0x{stack:04X}, {counted(max(stack - _STACK, 0), 'word')} from 0x{_STACK:04X}")
+        addresses = self._image.names.addresses
+        begin = next((addresses[name] for name in _STACK_NAMES if name in addresses), _STACK)
+        print(f"stack: up to 0x{stack:04X}, {counted(max(stack - begin, 0), 'word')} from 0x{begin:04X}")
+        for words in opened.warnings(board):
+            print(words)
 
 
 def _jobs(scenarios: Sequence[str], image: Image, profile_name: str, motor: str | None, seed: int) -> list[Job]:

@@ -164,6 +164,7 @@ def play_on(
             looks[1](board)
     finally:
         resets = int(board.statistics()["resets"])
+        loop.notes += opened.warnings(board)
         board.close()
     reason = reason or ("the watchdog reset the chip" if resets else "")
     return loop.played(columns, reason, time.perf_counter() - began)
@@ -181,7 +182,7 @@ class _ClosedLoop:
         self._load = 0.0
         self._corners = [time for time, _ in job.run.load]
         self._faults: list[tuple[float, str]] = []
-        self._notes: list[str] = []
+        self.notes: list[str] = []
         self._left = list(job.run.commands)
 
     @property
@@ -219,7 +220,7 @@ class _ClosedLoop:
         words.append("the start")
         if run.commands:
             words.append(counted(len(run.commands), "step") + " (references, commands)")
-        self._notes.append(
+        self.notes.append(
             "the image answers no request of the record protocol at 115200 bit/s (IDENTITY, asked three times): "
             f"{', '.join(words)} could not be given to it and its own signals not be read; it ran under the "
             "scenario's load, and figures are of the true machine alone"
@@ -262,7 +263,7 @@ class _ClosedLoop:
         wanted = [there[name] for name, _ in _STREAMED.values() if name in there]
         missing = [name for name, _ in _STREAMED.values() if name not in there]
         if missing:
-            self._notes.append(f"this edition has no signal {', '.join(missing)}")
+            self.notes.append(f"this edition has no signal {', '.join(missing)}")
         # As many as there can be: how long a sample is on the line says when it was taken.
         self._signals = wanted + [wanted[0]] * len(missing)
         places = [signal.index for signal in self._signals]
@@ -352,7 +353,8 @@ class _ClosedLoop:
     # ---- the record
 
     def played(self, columns: Sequence[str], reason: str, wall: float) -> Played:
-        notes = [*self._notes, *(f"refused: {words}" for words in self._client.refused)]
+        refused = (f"refused: {words}" for words in self._client.refused)
+        notes = [*self.notes, *refused]
         unknown = np.full(0, np.nan)
         rows: dict[str, npt.NDArray[Any]] = {}
         if self._origin is not None:
@@ -392,6 +394,6 @@ class _ClosedLoop:
         if not late.size or not late.any():
             return []
         return [
-            f"of {np.count_nonzero(late)} of {late.size} samples of the drive the period is known to "
+            f"of {counted(int(np.count_nonzero(late)), 'sample', late.size)} of the drive the period is known to "
             f"{int(late.max())} periods of 100 µs alone, as its background was late or its port busy"
         ]

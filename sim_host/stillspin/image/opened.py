@@ -12,6 +12,7 @@ from stillspin.board.desk import TICKS_PER_SECOND
 from stillspin.board.image import blocks_of
 from stillspin.cases import profile
 from stillspin.core_board import NativeBoard
+from stillspin.counted import counted
 from stillspin.errors import CampaignError
 from stillspin.flash import names
 from stillspin.flash.files import read_program
@@ -69,6 +70,17 @@ def hook_flash_library(board: NativeBoard, there: Names) -> None:
     erase, program, verify = (place(f"Flash2808_{name}") for name in ("Erase", "Program", "Verify"))
     if erase or program or verify:
         board.replace_flash_library(erase, program, verify, place("Flash_CPUScaleFactor"))
+
+
+def warnings(board: NativeBoard) -> list[str]:
+    """What a user of an image has to know of a run: that it read or wrote what the virtual chip has not."""
+    there = board.statistics()["unmodelled_accesses"]
+    if not there:
+        return []
+    return [
+        f"warning: {counted(there, 'time')} the program went to what the virtual chip has not and reads as 0: tables "
+        "of the boot ROM (IQmath's), SPI, eCAP and others (docs/chip.md); what was computed from them is wrong"
+    ]
 
 
 def advance(board: NativeBoard, seconds: float) -> None:
