@@ -18,7 +18,7 @@ from stillspin.cases import profile, scenario_file, variant
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.hil import built
-from stillspin.image import closed_loop, opened
+from stillspin.image import closed_loop, opened, run_record
 from stillspin.link.errors import NoAnswerError
 from stillspin.measure import figures, pieces
 from stillspin.runs import execute
@@ -88,19 +88,19 @@ def test_an_angle_is_held_against_that_of_its_own_period(both):
 def test_a_sample_is_of_the_period_that_is_said(monkeypatch):
     """Its signals are those that the firmware's own variables had behind that period's interrupt, bit for bit."""
     known, exact = {}, []
-    passed, rows = closed_loop._ClosedLoop._passed, closed_loop._ClosedLoop._rows
+    passed, rows = closed_loop._ClosedLoop._passed, run_record.RunRecord.rows
 
     def look(self):
         exact.append(self._board.signals()["angle"])
         passed(self)
 
-    def keep(self, origin):
-        made = rows(self, origin)
+    def keep(self, origin, end, *, has_drive):
+        made = rows(self, origin, end, has_drive=has_drive)
         known["rows"], known["origin"] = made[0], origin
         return made
 
     monkeypatch.setattr(closed_loop._ClosedLoop, "_passed", look)
-    monkeypatch.setattr(closed_loop._ClosedLoop, "_rows", keep)
+    monkeypatch.setattr(run_record.RunRecord, "rows", keep)
     through_the_port(job(duration=0.2))
     at = np.round(known["rows"]["time"] * 1e4).astype(int) + known["origin"]
     there = np.array(exact)[at]  # of the interrupt at the start of period `at`, seen at its end
@@ -146,7 +146,7 @@ def test_a_program_without_the_protocol_runs_under_the_load(control):
 
 def test_the_native_run_beside_is_recorded_as_rarely():
     scenario = variant.native().scenario(scenario_file.load("A10"))
-    assert {run.record_every for run in scenario.runs} == {closed_loop.RASTER}
+    assert {run.record_every for run in scenario.runs} == {run_record.RASTER}
     assert variant.native().settings(Settings(None, None, 1, "", image=object())).image is None
 
 

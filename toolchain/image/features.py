@@ -99,10 +99,7 @@ def shares(linked: Linked, always: Collection[str]) -> dict[Path, Row]:
 
 
 def _feature_of(path: Path) -> str:
-    """The feature in whose folder its source is, the innermost: one may lie in another's folder.
-
-    Or that alone has a use for it.
-    """
+    """The feature that alone has a use for its source, or in whose folder that is, the innermost: folders may nest."""
     features = compose.all_features()
     for feature in features:
         if any(path.match(f"{Path(source).parent}/CMakeFiles/*/{Path(source).name}.obj") for source in feature.instead):

@@ -15,7 +15,7 @@ from stillspin.cases.profile import Profile
 from stillspin.cases.scenario import Plot, Scenario
 from stillspin.entry import Entry
 from stillspin.errors import InputError
-from stillspin.image.closed_loop import RASTER
+from stillspin.image.run_record import RASTER
 from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.execute import Settings
 

@@ -1,20 +1,15 @@
 """A run of a scenario on an image, which drives the plant from the virtual chip's pins and is told by its serial port.
 
 What the native run calls, the image is sent: parameters, references and commands as records of the link. What the
-native run reads from the firmware's variables, the image streams: eight signals of one control interrupt every
-`RASTER`. True values are the plant's own, at the start of that interrupt's period. Which period it was follows from the
-drive's time in the sample, and from when its last octet came: the drive cannot have sent it earlier.
+native run reads from the firmware's variables, the image streams (run_record.py).
 """
 
 from __future__ import annotations
 
-import math
 import struct
 import time
-from array import array
 from bisect import bisect_right
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -28,37 +23,20 @@ from stillspin.counted import counted
 from stillspin.drive import describe, values
 from stillspin.drive.protocol import CONTROL_PERIOD, STREAM_EVENT, Command, Request, Words
 from stillspin.drive.state import FAULT, READY, RUN, RawStatus
-from stillspin.drive.table import Signal, Table
+from stillspin.drive.table import Table
 from stillspin.errors import StillspinError
 from stillspin.image import opened
 from stillspin.image.opened import Image
+from stillspin.image.run_record import RASTER, Played, RunRecord
 from stillspin.image.serial_client import SerialClient
 from stillspin.link.errors import NoAnswerError, RefusedError
 from stillspin.link.records import Record
 
-RASTER = 50
-"""Periods between two samples: eight signals are on the line at 115200 bit/s for 38 of them."""
-_BEHIND = 40
-"""Periods from the start of a sample's period to its last octet, at least; for 38 of them it is on the line."""
 _BOOT = 500
 _READY = 50_000
 _LATE = 60
 _REPORT = 200
 
-_TRUE = {
-    **{"true_angle": "electrical_angle", "true_speed": "speed", "torque": "torque", "load_torque": "load_torque"},
-    **{"i_a": "i_a", "i_b": "i_b", "i_c": "i_c", "true_i_d": "i_d", "true_i_q": "i_q", "v_dc": "link_voltage"},
-    "true_load_angle": "load_angle",
-}
-"""Columns of a record, and what the board calls them."""
-_TURN = 2.0 * math.pi
-_STREAMED = {
-    **{"state": ("state", 1.0), "est_angle": ("angle", _TURN), "est_speed": ("speed", 1.0)},
-    **{"speed_ref": ("speed_reference", 1.0), "i_d_ref": ("current_d_reference", 1.0)},
-    **{"i_q_ref": ("current_q_reference", 1.0), "deviation_q": ("deviation_q", 1.0)},
-    "load_angle": ("load_angle", _TURN),
-}
-"""Columns, the drive's signals and the column's units in each of theirs."""
 _COMMANDS = {"start": Command.START, "stop": Command.STOP, "coast": Command.COAST, "reset": Command.RESET}
 
 
@@ -80,31 +58,6 @@ class Wanted(Protocol):
     @property
     def seed(self) -> int:
         """Of the noise."""
-
-
-@dataclass
-class Played:
-    """As NativeResult, and `notes`: what differs from a native run, in words."""
-
-    signals: Mapping[str, npt.NDArray[Any]]
-    completed: bool
-    reason: str
-    faults: Sequence[tuple[float, str]] = ()
-    waveform: Mapping[str, Mapping[str, npt.NDArray[Any]]] = field(default_factory=lambda: {"raster": {"time": _NONE}})
-    stats: Mapping[str, float] = field(default_factory=dict)
-    notes: list[str] = field(default_factory=list)
-    sent: list[tuple[float, str]] = field(default_factory=list)
-    """Seconds after power-on, and octets in hexadecimal digits."""
-
-
-_NONE: npt.NDArray[Any] = np.empty(0)
-
-
-@dataclass(frozen=True)
-class _Sample:
-    period: int  # in which its last octet came
-    time_ms: int  # of the drive
-    values: tuple[float, ...]
 
 
 class _BrokenOffError(Exception):
@@ -174,9 +127,7 @@ class _ClosedLoop:
     def __init__(self, board: NativeBoard, job: Wanted, progress: Progress, begins: Look) -> None:
         self._board, self._job, self._progress, self._begins = board, job, progress, begins
         self._client = SerialClient(board, self._passed, self._event)
-        self._truth: dict[str, array[float]] = {name: array("d") for name in _TRUE}
-        self._samples: list[_Sample] = []
-        self._signals: list[Signal] = []
+        self._record = RunRecord()
         self._table: Table | None = None
         self._origin: int | None = None
         self._load = 0.0
@@ -259,14 +210,10 @@ class _ClosedLoop:
 
     def _open_stream(self) -> None:
         assert self._table is not None
-        there = {signal.name: signal for signal in self._table.signals}
-        wanted = [there[name] for name, _ in _STREAMED.values() if name in there]
-        missing = [name for name, _ in _STREAMED.values() if name not in there]
+        missing = self._record.choose(self._table.signals)
         if missing:
             self.notes.append(f"this edition has no signal {', '.join(missing)}")
-        # As many as there can be: how long a sample is on the line says when it was taken.
-        self._signals = wanted + [wanted[0]] * len(missing)
-        places = [signal.index for signal in self._signals]
+        places = [signal.index for signal in self._record.signals]
         period_ms = round(RASTER * CONTROL_PERIOD * 1e3)
         self._client.ask(Request.STREAM, struct.pack(f"<H{len(places)}H", period_ms, *places))
 
@@ -299,9 +246,7 @@ class _ClosedLoop:
         return -1.0 if self._origin is None else (self._client.period - self._origin) * CONTROL_PERIOD
 
     def _passed(self) -> None:
-        truth = self._board.truth()
-        for name, column in self._truth.items():
-            column.append(truth[_TRUE[name]])
+        self._record.pass_period(self._board.truth())
         self._renew_load()
         if self._client.period % _REPORT == 0 and not self._progress(
             min(max(self._now(), 0.0) / self._job.run.duration, 1.0)
@@ -325,17 +270,11 @@ class _ClosedLoop:
             self._board.set_load(load)
 
     def _event(self, record: Record) -> None:
-        form = f"<I{len(self._signals)}iB"
-        if record.kind != STREAM_EVENT or len(record.body) != struct.calcsize(form) or not self._signals:
-            return
-        time_ms, *raw, known = struct.unpack(form, record.body)
-        pairs = zip(self._signals, raw, strict=True)
-        self._samples.append(
-            _Sample(self._client.period, time_ms, tuple(signal.to_user(value, known) for signal, value in pairs))
-        )
+        if record.kind == STREAM_EVENT:
+            self._record.take(record.body, self._client.period)
 
     def _state(self) -> int:
-        return int(self._samples[-1].values[0]) if self._samples else 0
+        return self._record.state
 
     def _look_for_fault(self) -> None:
         if self._table and not self._faults and self._state() == FAULT:
@@ -350,7 +289,7 @@ class _ClosedLoop:
             return f"number {status.fault}"
         return words.split(b"\0")[0].decode("ascii", "replace")
 
-    # ---- the record
+    # ---- what the run was
 
     def played(self, columns: Sequence[str], reason: str, wall: float) -> Played:
         refused = (f"refused: {words}" for words in self._client.refused)
@@ -358,7 +297,7 @@ class _ClosedLoop:
         unknown = np.full(0, np.nan)
         rows: dict[str, npt.NDArray[Any]] = {}
         if self._origin is not None:
-            rows, said = self._rows(self._origin)
+            rows, said = self._record.rows(self._origin, self._client.period, has_drive=self._table is not None)
             notes += said
             unknown = np.full(len(rows["time"]), np.nan)
         signals = {name: rows.get(name, unknown) for name in columns}
@@ -368,32 +307,3 @@ class _ClosedLoop:
             "start_seconds": (self._origin or 0) * CONTROL_PERIOD,
         }
         return Played(signals, not reason, reason, self._faults, stats=stats, notes=notes, sent=self._client.sent)
-
-    def _rows(self, origin: int) -> tuple[dict[str, npt.NDArray[Any]], list[str]]:
-        truth = {name: np.frombuffer(column, dtype=np.float64) for name, column in self._truth.items()}
-        if not self._table:
-            at = np.arange(origin, self._client.period, RASTER)
-            return {"time": (at - origin) * CONTROL_PERIOD, **{k: v[at - 1] for k, v in truth.items()}}, []
-        arrived = np.array([sample.period for sample in self._samples])
-        drive = np.array([sample.time_ms for sample in self._samples]) * 10
-        offset = int(np.min(arrived - drive)) - _BEHIND
-        at = drive + offset
-        kept = at >= origin
-        late = (arrived - at - _BEHIND)[kept]
-        streamed = np.array([sample.values for sample in self._samples])[kept]
-        at = at[kept]
-        rows = {"time": (at - origin) * CONTROL_PERIOD, **{k: v[at - 1] for k, v in truth.items()}}
-        places = {signal.name: place for place, signal in enumerate(self._signals)}
-        for column, (name, scale) in _STREAMED.items():
-            if name in places:
-                rows[column] = streamed[:, places[name]] * scale
-        return rows, self._said_of_instants(late)
-
-    @staticmethod
-    def _said_of_instants(late: npt.NDArray[Any]) -> list[str]:
-        if not late.size or not late.any():
-            return []
-        return [
-            f"of {counted(int(np.count_nonzero(late)), 'sample', late.size)} of the drive the period is known to "
-            f"{int(late.max())} periods of 100 µs alone, as its background was late or its port busy"
-        ]

@@ -73,13 +73,13 @@ def hook_flash_library(board: NativeBoard, there: Names) -> None:
 
 
 def warnings(board: NativeBoard) -> list[str]:
-    """What a user of an image has to know of a run: that it read or wrote what the virtual chip has not."""
+    """What a user of an image has to know of a run: that it used parts of the chip that are not modelled."""
     there = board.statistics()["unmodelled_accesses"]
     if not there:
         return []
     return [
-        f"warning: {counted(there, 'time')} the program went to what the virtual chip has not and reads as 0: tables "
-        "of the boot ROM (IQmath's), SPI, eCAP and others (docs/chip.md); what was computed from them is wrong"
+        f"warning: the program accessed parts of the chip that are not modelled ({counted(there, 'time')}): the boot "
+        "ROM's tables (IQmath), SPI, eCAP (docs/chip.md). They read as 0; results computed from them are wrong"
     ]
 
 

@@ -22,7 +22,7 @@ from stillspin.core_board import NativeBoard
 from stillspin.core_code import Change
 from stillspin.errors import InputError
 from stillspin.image import closed_loop, opened
-from stillspin.image.closed_loop import Played
+from stillspin.image.run_record import Played
 from stillspin.runs.execute import Job
 
 _FORMAT = 2
