@@ -16,14 +16,14 @@ FOLDER = "docs/figures"
 SUFFIXES = {".c", ".h", ".cpp", ".hpp", ".toml", ".py", ".cmd", ".js", ".css", ".html"}
 PICTURES = "docs/images"
 DRIVE = ("control", "estimators", "firmware", "hal", "svpwm")
-# What decides a figure of a run: the drive, what it runs on, what is done with it, and how it is judged.
+# What decides a figure of a run: the drive, what it runs on, what is done with it, and how it is judged. Every such run
+# is of the drive's C made for this machine, so the core that runs an image's machine code has no part in it.
 RUNS = (
     *DRIVE,
-    *(
-        f"sim_host/{name}"
-        for name in ("bench", "chip", "devices", "plant", "motors", "profiles", "scenarios", "schemes")
-    ),
+    *(f"sim_host/{name}" for name in ("bench", "chip", "devices", "plant", "profiles", "scenarios", "schemes")),
+    *(f"sim_host/motors/{name}.toml" for name in ("A", "B", "B-SPM")),
     *(f"sim_host/stillspin/{name}" for name in ("cases", "measure", "runs")),
+    *(f"!sim_host/chip/{name}" for name in ("c28x", "code_cpu", "code_flash_library")),
 )
 # The C++ tests in which the drive's C runs.
 TESTS = tuple(
@@ -87,11 +87,13 @@ COMMANDS = {
 
 
 def _files(root: Path, trees: tuple[str, ...]) -> list[Path]:
+    """The files of `trees`, each a folder or a file; less those whose path begins with what stands behind a `!`."""
     found: set[Path] = set()
     for tree in trees:
         where = root / tree
         found |= {where} if where.is_file() else {path for path in where.rglob("*") if path.suffix in SUFFIXES}
-    return sorted(found)
+    without = tuple(str(root / tree[1:]) for tree in trees if tree.startswith("!"))
+    return sorted(path for path in found if not str(path).startswith(without))
 
 
 def sources(root: Path, trees: tuple[str, ...] = RUNS) -> str:
