@@ -207,6 +207,25 @@ def test_a_single_different_bit_is_found_in_its_period(requester, play):
     assert "on the virtual drive" in str(result.difference)
 
 
+class Miscounted(Falsified):
+    """A requester to whose board the check sum of its signals in one step is another one."""
+
+    def request(self, kind, body=b"", **words):
+        answer = self._requester.request(kind, body, **words)
+        if kind == Request.HIL_STEP:
+            self._left -= 1
+            if self._left == 0:
+                return answer[:-1] + bytes([answer[-1] ^ 1])
+        return answer
+
+
+def test_signals_that_are_the_same_are_not_said_to_differ(requester, play):
+    """The values that the board tells are read as it tells them: none of them differs here."""
+    result = Loop(Miscounted(requester, 1150)).run(core.load(), play(0.05))
+    assert result.difference.step == 1149
+    assert result.difference.words == "the check sums of the signals differ, the signals do not any more"
+
+
 class Silent(Falsified):
     """A requester whose way is lost at a step."""
 

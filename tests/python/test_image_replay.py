@@ -63,21 +63,24 @@ def test_the_codes_decide(control, recorded):
 
 
 @pytest.mark.parametrize(
-    ("text", "other", "written"),
+    "planted",
     [
-        ("SFR     ACC,#8", "SFR     ACC,#7", "MOV     @CMPA,AL"),
-        ("#0x0900          ; SOCA", "#0x0901          ; SOCA", "ETSEL,#"),
+        ("control.asm", "SFR     ACC,#8", "SFR     ACC,#7", "MOV     @CMPA,AL"),
+        ("sampled.asm", "#0x0900          ; SOCA", "#0x0901          ; SOCA", "ETSEL,#"),
     ],
 )
-def test_a_planted_error_is_found_where_it_is_written(tmp_path, recorded, text, other, written):
-    source = (PROGRAMS / "control.asm").read_text()
+def test_a_planted_error_is_found_where_it_is_written(tmp_path, recorded, planted):
+    name, text, other, written = planted
+    for part in ("control.asm", "sampled.asm", "start.asm"):
+        (tmp_path / part).write_text((PROGRAMS / part).read_text())
+    changed = tmp_path / name
+    source = changed.read_text()
     assert text in source
-    (tmp_path / "start.asm").write_text((PROGRAMS / "start.asm").read_text())
-    changed = tmp_path / "control.asm"
     changed.write_text(source.replace(text, other))
-    file = linked_file(tmp_path, "control", [changed])
+    file = linked_file(tmp_path, "control", [tmp_path / "control.asm"])
     difference = compared(file, 1, recorded)
     line = opened.read(file).names.lines.at(difference.program - 1)
+    assert line.file == name
     assert written in changed.read_text().splitlines()[line.number - 1]
     assert difference.expected[:2] == difference.found[:2], "the same step and register"
 

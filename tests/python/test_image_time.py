@@ -1,5 +1,6 @@
 """What an image's interrupts and functions took: the notes of the core, names of COFF, and `stillspin image time`."""
 
+import re
 import struct
 import subprocess
 import sys
@@ -159,7 +160,8 @@ def test_the_command_names_interrupts_and_functions(tmp_path):
     done = run_command(image, "--after", "0.02", "--for", "0.01", "--functions", "2")
     assert done.returncode == 0, done.stderr
     lines = done.stdout.splitlines()
-    assert lines[0].startswith("control.out: 0.01 s, 1000")
+    cycles = re.match(r"control\.out: 0\.01 s, (\d+) cycles, ", lines[0])
+    assert abs(int(cycles[1]) - 1_000_000) < 20, "the last instruction at either end may be cut or not"
     assert lines[1].startswith("waited for registers ")
     assert any(line.startswith("INT1.1 sample ") and " 200 " in line for line in lines)
     assert any(line.startswith("beside ") for line in lines)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from stillspin.core import NativeCore, Progress
 from stillspin.core_loop import NativeStepLoop
+from stillspin.drive import describe
 from stillspin.drive.protocol import Request
 from stillspin.drive.requester import REASONS, Requester
 from stillspin.errors import CampaignError
@@ -168,7 +169,7 @@ class Loop:
         for first in range(0, len(ours), _SIGNALS_AT_ONCE):
             wanted = range(first, min(first + _SIGNALS_AT_ONCE, len(ours)))
             body = self._requester.request(Request.SIGNALS, struct.pack(f"<{len(wanted)}H", *wanted), repeat=True)
-            theirs = struct.unpack_from(f"<{len(wanted)}i", body, len(body) - 4 * len(wanted))
+            *theirs, _known = describe.unpack(f"<{len(wanted)}iB", body)
             for index, value in zip(wanted, theirs, strict=True):
                 if value != ours[index]:
                     name = self._requester.request(Request.SIGNAL_INFO, struct.pack("<H", index), repeat=True)
