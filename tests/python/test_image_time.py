@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 import pytest
-from c28x_chip import MILLISECOND, blocks, linked_file, program
+from c28x_chip import MILLISECOND, blocks, program
 from flash_files import coff, intel_hex
 
 from stillspin import core
@@ -168,15 +168,6 @@ def test_the_command_names_interrupts_and_functions(tmp_path):
     assert any(line.startswith("sample ") and "100%" in line for line in lines)
     assert any(line.startswith("and ") and "more" in line for line in lines)
     assert lines[-1] == "stack: up to 0x0411, 17 words from 0x0400"
-
-
-def test_an_access_to_what_is_not_modelled_is_said(tmp_path):
-    source = tmp_path / "rom.asm"
-    body = "start: MOVL XAR7,#0x3FF000\n MOV AL,*XAR7\nstay: B stay,UNC\n"
-    source.write_text(f" .org 0x3F7FF6\n LB start\n .org 0x3F4000\n{body}")
-    done = run_command(linked_file(tmp_path, "rom", [source]), "--for", "0.001")
-    said = "warning: the program accessed parts of the chip that are not modelled (1 time): "
-    assert done.stdout.splitlines()[-1].startswith(said)
 
 
 def test_without_names_there_are_addresses(tmp_path):

@@ -6,7 +6,7 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -49,6 +49,7 @@ class Options:
     `speed`: times real time, 0 as fast as possible. `load`: Nm. `socketcan`: an interface of the
     kernel in place of the SLCAN adapter. `end`: simulated seconds after which it stops. `eeprom`: the file
     that keeps the content of the EEPROM; a new memory without. `parent`: a process without which it stops.
+    `remarks`: says of the board when it is switched off what a user has to know of the run.
     """
 
     speed: float = 1.0
@@ -60,6 +61,7 @@ class Options:
     eeprom: Path | None = None
     parent: int | None = None
     debugger: Debugger | None = None
+    remarks: Callable[[NativeBoard], list[str]] | None = None
 
 
 def serve(board: NativeBoard, options: Options, title: str) -> None:
@@ -89,11 +91,13 @@ def serve(board: NativeBoard, options: Options, title: str) -> None:
             _loop(desk, pacer, show, stop, options)
             wall = time.monotonic() - began
         ran = desk.time
+        remarks = options.remarks(board) if options.remarks else []
     finally:
         if options.eeprom:
             eeprom_file.keep(board, options.eeprom)
         desk.close()
-    _take_leave(f"switched off after {ran:.1f} s of the drive's time, {ran / wall:.2f} × real time", show)
+    left = f"switched off after {ran:.1f} s of the drive's time, {ran / wall:.2f} × real time"
+    _take_leave("\n".join((*remarks, left)), show)
 
 
 def _take_leave(words: str, show: Show) -> None:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from stillspin import core, resources
-from stillspin.board import image as images
 from stillspin.board import power, serve
 from stillspin.cases import profile, variant
 from stillspin.errors import InputError
@@ -114,13 +114,15 @@ def board(
     )
     if image:
         title += f", executes {image.name}"
-    powered = power.power(native, chosen, changes, seed, images.load(image) if image else None)
-    debugger = None
-    if image:
-        names = opened.equip(powered, image)
-        debugger = None if gdb is None else Remote(powered, names, gdb)
-        title += f", gdb: target remote localhost:{debugger.port}" if debugger else ""
-    options = serve.Options(speed, serial_link, can_link, socketcan, load, end, eeprom, parent, debugger)
+    program = opened.read(image) if image else None
+    if program:
+        powered = opened.power_with(native, program, chosen, seed)
+    else:
+        powered = power.power(native, chosen, changes, seed)
+    debugger = Remote(powered, program.names, gdb) if program and gdb is not None else None
+    title += f", gdb: target remote localhost:{debugger.port}" if debugger else ""
+    remarks = partial(opened.warnings, image=program) if program else None
+    options = serve.Options(speed, serial_link, can_link, socketcan, load, end, eeprom, parent, debugger, remarks)
     try:
         serve.serve(powered, options, title)
     finally:

@@ -123,6 +123,8 @@ def record(
         board = opened.power_on(image, profile_name, name, seed) if image else _firmware(profile_name, name, seed)
         try:
             tape = tapes.play(board, _USUAL if seconds is None else seconds, octets)
+            if image:
+                opened.say(board, image)
         finally:
             board.close()
     tapes.save(replace(tape, made_by=file.name if file else "firmware"), out)
@@ -160,6 +162,7 @@ def replay(
         tapes.play(board, tape.seconds, tape.octets, tape)
         difference = tapes.compare(tape, board)
         steps, writes = len(board.taped()[0]), len(board.taped()[1])
+        opened.say(board, image)
     finally:
         board.close()
     if difference:

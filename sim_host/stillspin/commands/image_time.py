@@ -136,8 +136,6 @@ class _Looked:
         addresses = self._image.names.addresses
         begin = next((addresses[name] for name in _STACK_NAMES if name in addresses), _STACK)
         print(f"stack: up to 0x{stack:04X}, {counted(max(stack - begin, 0), 'word')} from 0x{begin:04X}")
-        for words in opened.warnings(board):
-            print(words)
 
 
 def _jobs(scenarios: Sequence[str], image: Image, profile_name: str, motor: str | None, seed: int) -> list[Job]:
@@ -216,5 +214,6 @@ def time(
         looked.begin(board)
         opened.advance(board, _USUAL if seconds is None else seconds)
         looked.say(board)
+        opened.say(board, image)
     finally:
         board.close()

@@ -44,5 +44,6 @@ def trace(
             print(f"not reached within {within:g} s; the last instructions before:")
         for line in tracing.lines(board, image.names):
             print(line)
+        opened.say(board, image)
     finally:
         board.close()

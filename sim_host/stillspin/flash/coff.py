@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from stillspin.errors import InputError
 from stillspin.flash import layout
+from stillspin.flash.octets import readable
 from stillspin.flash.program import Block, Program, assemble
 
 MAGIC = b"\xc2\x00"
@@ -96,19 +97,15 @@ def functions(data: bytes) -> dict[int, str]:
 
 
 def addresses(data: bytes) -> dict[str, int]:
-    """Addresses of everything that has a name, code and data; absolute values too.
-
-    Raises:
-        struct.error: the file is cut short.
-    """
+    """Addresses of everything that has a name, code and data; absolute values too."""
     return {name: value for name, value, section in _symbols(data) if section > 0 or section == _ABSOLUTE}
 
 
 class Symbol(NamedTuple):
     """An entry of the table of symbols."""
 
-    name: str
-    """Of what has an address, and of what is about a function's lines."""
+    name: str | None
+    """Of what has an address, and of what is about a function's lines; None where it cannot be read."""
     value: int
     section: int
     kind: int
@@ -127,15 +124,23 @@ def _symbols(data: bytes) -> Iterator[tuple[str, int, int]]:
             yield entry.name, entry.value, entry.section
 
 
-def raw_symbols(data: bytes) -> Iterator[tuple[int, Symbol, bytes]]:
-    """Every symbol with its index, and the octets of what more there is of it.
-
-    Raises:
-        struct.error: the file is cut short.
-    """
+def lost_symbols(data: bytes) -> int:
+    """Of how many the name cannot be read, or they lie behind the end of the file."""
     _, _, _, table, symbols, _, _, _ = _HEADER.unpack_from(data)
-    at = 0
-    while at < symbols:
+    lost = [entry for _, entry, _ in raw_symbols(data) if entry.has_address and entry.name is None]
+    return len(lost) + int(symbols) - _there(data, table, symbols)
+
+
+def _there(data: bytes, table: int, symbols: int) -> int:
+    """How many of the table's entries the file has."""
+    return min(symbols, max(len(data) - table, 0) // _SYMBOL.size)
+
+
+def raw_symbols(data: bytes) -> Iterator[tuple[int, Symbol, bytes]]:
+    """Every symbol that the file has, with its index, and the octets of what more there is of it."""
+    _, _, _, table, symbols, _, _, _ = _HEADER.unpack_from(data)
+    at, end = 0, _there(data, table, symbols)
+    while at < end:
         begin = table + at * _SYMBOL.size
         name, value, section, _, kind, more = _SYMBOL.unpack_from(data, begin)
         words = text(name, data) if kind in _NAMED or kind == BEGIN_OR_END else ""
@@ -144,8 +149,11 @@ def raw_symbols(data: bytes) -> Iterator[tuple[int, Symbol, bytes]]:
         at += 1 + more
 
 
-def text(octets: bytes, data: bytes) -> str:
-    """A name of up to so many characters in place, or where it is in the file's table of strings."""
+def text(octets: bytes, data: bytes) -> str | None:
+    """A name of up to so many characters in place, or where it is in the file's table of strings.
+
+    None: there is nothing of the kind at that place.
+    """
     _, _, _, table, symbols, _, _, _ = _HEADER.unpack_from(data)
     return _name(octets, data, table + symbols * _SYMBOL.size)
 
@@ -183,12 +191,15 @@ def section(data: bytes, wanted: str) -> Iterator[bytes]:
             yield data[raw : raw + size]
 
 
-def _name(name: bytes, data: bytes, strings: int) -> str:
-    """Up to eight characters in place, or where they are in the table of strings."""
-    if name[:4] == bytes(4):
+def _name(name: bytes, data: bytes, strings: int) -> str | None:
+    """Up to eight characters in place, or where they are in the table of strings; None for what is no name."""
+    if name[:4] == bytes(4) and any(name):
         begin = strings + int.from_bytes(name[4:8], "little")
-        name = data[begin : data.index(0, begin)]
-    return name.rstrip(b"\0").decode("ascii", "replace")
+        end = data.find(0, begin)
+        if end < 0:
+            return None
+        name = data[begin:end]
+    return readable(name.rstrip(b"\0"))
 
 
 def patched(data: bytes, name: str, address: int, words: Sequence[int]) -> bytes:

@@ -57,7 +57,7 @@ def _functions(data: bytes) -> dict[int, _Function]:
     file, last, address = "?", 0, 0
     for index, entry, more in coff.raw_symbols(data):
         if entry.kind == _FILE and more:
-            file = coff.text(more[:_NAME], data).replace("\\", "/")
+            file = (coff.text(more[:_NAME], data) or "?").replace("\\", "/")
         elif entry.kind == coff.BEGIN_OR_END:
             if entry.name == ".bf" and len(more) >= _LINE.size:
                 found[last] = _Function(address, file, _LINE.unpack_from(more)[0])

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from stillspin.errors import InputError
+from stillspin.flash.octets import readable
 from stillspin.flash.program import Block, Program, assemble
 
 KIND = "ELF"
@@ -91,11 +92,10 @@ def functions(data: bytes) -> dict[int, str]:
 
     Raises:
         struct.error: the file is cut short.
-        ValueError: a table of names has no text.
     """
     sections = _sections(data)
     found: dict[int, str] = {}
-    for name, value, kind, section in _symbols(data, sections):
+    for name, value, kind, section in _named(data, sections):
         code = section < len(sections) and sections[section][2] & _INSTRUCTIONS
         if code and kind in _NAMED and not name.startswith((".", "$")):
             found.setdefault(value, name)
@@ -107,9 +107,19 @@ def addresses(data: bytes) -> dict[str, int]:
     sections = _sections(data)
     return {
         name: value
-        for name, value, kind, section in _symbols(data, sections)
+        for name, value, kind, section in _named(data, sections)
         if kind in _ADDRESSED and (0 < section < len(sections) or section == _ABSOLUTE)
     }
+
+
+def lost_symbols(data: bytes) -> int:
+    """Of how many the name cannot be read, or they lie behind the end of the file. Raises as `functions` does."""
+    sections = _sections(data)
+    cut = 0
+    for table in sections:
+        if table[1] == _SYMBOL_TABLE:
+            cut += (table[5] - len(_entries(data, table))) // _SYMBOL.size
+    return cut + sum(name is None for name, *_ in _symbols(data, sections))
 
 
 def section(data: bytes, wanted: str) -> Iterator[bytes]:
@@ -131,19 +141,29 @@ def _sections(data: bytes) -> list[tuple[int, ...]]:
     ]
 
 
-def _symbols(data: bytes, sections: list[tuple[int, ...]]) -> Iterator[tuple[str, int, int, int]]:
-    """Name, value, type and section of what has a name."""
-    for _, kind, _, _, at, octets, link, _, _, _ in sections:
-        if kind != _SYMBOL_TABLE:
+def _entries(data: bytes, table: tuple[int, ...]) -> bytes:
+    """The octets of those symbols of a table that the file has."""
+    there = data[table[4] : table[4] + table[5]]
+    return there[: len(there) // _SYMBOL.size * _SYMBOL.size]
+
+
+def _symbols(data: bytes, sections: list[tuple[int, ...]]) -> Iterator[tuple[str | None, int, int, int]]:
+    """Name, value, type and section of every symbol; None for a name that cannot be read, "" for none."""
+    for table in sections:
+        if table[1] != _SYMBOL_TABLE:
             continue
-        if link >= len(sections):
-            raise ValueError(f"symbols name section {link} of {len(sections)}")
-        strings = sections[link][4]
-        for place in range(at, at + octets, _SYMBOL.size):
-            name, value, _, information, _, section = _SYMBOL.unpack_from(data, place)
-            if words := _text(data, strings + name):
-                yield words, value, information & 0xF, section
+        link = table[6]
+        strings = sections[link][4] if link < len(sections) else len(data)
+        for name, value, _, information, _, section in _SYMBOL.iter_unpack(_entries(data, table)):
+            yield _text(data, strings + name) if name else "", value, information & 0xF, section
 
 
-def _text(data: bytes, at: int) -> str:
-    return data[at : data.index(0, at)].decode("ascii", "replace")
+def _named(data: bytes, sections: list[tuple[int, ...]]) -> Iterator[tuple[str, int, int, int]]:
+    for name, value, kind, section in _symbols(data, sections):
+        if name:
+            yield name, value, kind, section
+
+
+def _text(data: bytes, at: int) -> str | None:
+    end = data.find(0, at)
+    return None if end < 0 else readable(data[at:end])

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import zip_longest
 from pathlib import Path
 
+from stillspin.counted import counted
 from stillspin.errors import InputError, did_you_mean
 from stillspin.flash import coff, coff_lines, debug_lines, elf
 from stillspin.flash.debug_head import Strings
@@ -24,6 +25,8 @@ class Names:
     addresses: Mapping[str, int] = field(default_factory=dict)
     """Of functions and variables. C's names have a _ in front in COFF."""
     lines: Lines = field(default_factory=lambda: Lines([]))
+    damage: Sequence[str] = ()
+    """What could not be read of the file's names, in words."""
 
     def function(self, address: int) -> str:
         """The name of the function around an address, or the address."""
@@ -64,18 +67,23 @@ class Names:
 
 
 def read(file: Path) -> Names:
-    """Those of a file. What is damaged is left out: the words are there, and that is what runs."""
+    """Those of a file. What is damaged is left out and said: the words are there, and that is what runs."""
     data = file.read_bytes()
     kind = elf if data.startswith(elf.MAGIC) else coff if data.startswith(coff.MAGIC) else None
     if kind is None:
         return Names()
+    damage = []
     try:
-        lines = _lines(data, kind.section)
-        if not lines and kind is coff:
-            lines = coff_lines.read(data)
-        return Names(kind.functions(data), kind.addresses(data), lines)
+        lines = _lines(data, kind.section) or (coff_lines.read(data) if kind is coff else Lines([]))
     except (struct.error, ValueError):
-        return Names()
+        lines = Lines([])
+        damage.append("the source lines are damaged and left out")
+    try:
+        if lost := kind.lost_symbols(data):
+            damage.append(f"{counted(lost, 'symbol')} cannot be read: left out")
+        return Names(kind.functions(data), kind.addresses(data), lines, damage)
+    except struct.error:
+        return Names(lines=lines, damage=[*damage, "the table of symbols is damaged and left out"])
 
 
 def _lines(data: bytes, section: Callable[[bytes, str], Iterator[bytes]]) -> Lines:

@@ -3,6 +3,12 @@
 from __future__ import annotations
 
 
+def readable(name: bytes) -> str | None:
+    """The characters of a symbol's name; None where there are others than those of names."""
+    text = name.decode("ascii", "replace")
+    return text if text.isascii() and text.isprintable() else None
+
+
 class Octets:
     """A place in some octets, which goes on with what is read."""
 

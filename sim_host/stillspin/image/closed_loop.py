@@ -15,7 +15,6 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from stillspin.board.image import blocks_of
 from stillspin.cases.scenario import Run
 from stillspin.core import NativeCore, Plant, Progress
 from stillspin.core_board import NativeBoard
@@ -91,10 +90,8 @@ def play(
         InputError: the image cannot be executed.
         ValueError: the plant cannot be.
     """
-    blocks = blocks_of(image.program, str(image.file))
-    board = native.VirtualBoard(plant=job.plant, parameters={}, seed=job.seed, image=blocks)
-    opened.hook_flash_library(board, image.names)
-    return play_on(board, job, progress, [str(row["name"]) for row in native.signals()], looks)
+    board = opened.power_plant(native, image, job.plant, job.seed)
+    return play_on(board, job, progress, [str(row["name"]) for row in native.signals()], looks, image=image)
 
 
 def play_on(
@@ -103,8 +100,10 @@ def play_on(
     progress: Progress | None,
     columns: Sequence[str],
     looks: tuple[Look, Look] = (_not, _not),
+    *,
+    image: Image | None = None,
 ) -> Played:
-    """The same on a board that has just been switched on, which is switched off at the end."""
+    """The same on a board that has just been switched on, of an image or not, which is switched off at the end."""
     loop = _ClosedLoop(board, job, progress or (lambda _: True), looks[0])
     reason = ""
     began = time.perf_counter()
@@ -117,7 +116,7 @@ def play_on(
             looks[1](board)
     finally:
         resets = int(board.statistics()["resets"])
-        loop.notes += opened.warnings(board)
+        loop.notes += opened.warnings(board, image) if image else []
         board.close()
     reason = reason or ("the watchdog reset the chip" if resets else "")
     return loop.played(columns, reason, time.perf_counter() - began)

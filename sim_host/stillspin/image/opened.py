@@ -11,6 +11,8 @@ from stillspin.board import power
 from stillspin.board.desk import TICKS_PER_SECOND
 from stillspin.board.image import blocks_of
 from stillspin.cases import profile
+from stillspin.cases.profile import Profile
+from stillspin.core import NativeCore, Plant
 from stillspin.core_board import NativeBoard
 from stillspin.counted import counted
 from stillspin.errors import CampaignError
@@ -49,20 +51,31 @@ def power_on(image: Image, profile_name: str, motor: str, seed: int) -> NativeBo
     """
     native = core.load()
     chosen = profile.load(profile_name, core.plant_schema(native), core.parameters(native), motor)
+    return power_with(native, image, chosen, seed)
+
+
+def power_with(native: NativeCore, image: Image, chosen: Profile, seed: int) -> NativeBoard:
+    """The same with a profile at hand."""
     board = power.power(native, chosen, profile.Changes(), seed, blocks_of(image.program, str(image.file)))
-    equip(board, image.file)
+    _hook_flash_library(board, image.names)
     return board
 
 
-def equip(board: NativeBoard, file: Path) -> Names:
-    """Carry out TI's flash library on the model's cells, where the image has it; gives the image's names."""
-    there = names.read(file)
-    hook_flash_library(board, there)
-    return there
+def power_plant(native: NativeCore, image: Image, plant: Plant, seed: int) -> NativeBoard:
+    """The same with all of the plant at hand, as a run of a scenario has it.
+
+    Raises:
+        InputError: an image that begins nowhere.
+        ValueError: the plant cannot be.
+    """
+    blocks = blocks_of(image.program, str(image.file))
+    board = native.VirtualBoard(plant=plant, parameters={}, seed=seed, image=blocks)
+    _hook_flash_library(board, image.names)
+    return board
 
 
-def hook_flash_library(board: NativeBoard, there: Names) -> None:
-    """The same with the names at hand."""
+def _hook_flash_library(board: NativeBoard, there: Names) -> None:
+    """Carry out TI's flash library on the model's cells, where the image has it."""
 
     def place(name: str) -> int:
         return there.addresses.get(name, there.addresses.get(f"_{name}", 0))
@@ -72,15 +85,21 @@ def hook_flash_library(board: NativeBoard, there: Names) -> None:
         board.replace_flash_library(erase, program, verify, place("Flash_CPUScaleFactor"))
 
 
-def warnings(board: NativeBoard) -> list[str]:
-    """What a user of an image has to know of a run: that it used parts of the chip that are not modelled."""
-    there = board.statistics()["unmodelled_accesses"]
-    if not there:
-        return []
-    return [
-        f"warning: the program accessed parts of the chip that are not modelled ({counted(there, 'time')}): the boot "
-        "ROM's tables (IQmath), SPI, eCAP (docs/chip.md). They read as 0; results computed from them are wrong"
-    ]
+def warnings(board: NativeBoard, image: Image) -> list[str]:
+    """What a user of an image has to know of a run: what it used that is not modelled, what its file does not tell."""
+    said = [f"{image.file.name}: {damage}" for damage in image.names.damage]
+    if there := board.statistics()["unmodelled_accesses"]:
+        said.append(
+            f"the program accessed parts of the chip that are not modelled ({counted(there, 'time')}): the boot "
+            "ROM's tables (IQmath), SPI, eCAP (docs/chip.md). They read as 0; results computed from them are wrong"
+        )
+    return [f"warning: {words}" for words in said]
+
+
+def say(board: NativeBoard, image: Image) -> None:
+    """Print them."""
+    for words in warnings(board, image):
+        print(words)
 
 
 def advance(board: NativeBoard, seconds: float) -> None:

@@ -16,7 +16,6 @@ from itertools import zip_longest
 from pathlib import Path
 
 from stillspin.board.desk import TICKS_PER_SECOND
-from stillspin.board.image import blocks_of
 from stillspin.core import NativeCore, Progress
 from stillspin.core_board import NativeBoard
 from stillspin.core_code import Change
@@ -107,13 +106,16 @@ def of_run(native: NativeCore, job: Job, progress: Progress | None) -> tuple[Tap
         progress: gets the share done (0 … 1); false breaks the run off.
     """
     made: list[tuple[float, list[int], list[tuple[int, int, int, int]], list[list[Change]]]] = []
-    blocks = blocks_of(job.image.program, str(job.image.file)) if job.image else []
-    board = native.VirtualBoard(plant=job.plant, parameters={}, seed=job.seed, image=blocks)
-    if job.image:
-        opened.hook_flash_library(board, job.image.names)
+    image = job.image
+    if image:
+        board = opened.power_plant(native, image, job.plant, job.seed)
+    else:
+        board = native.VirtualBoard(plant=job.plant, parameters={}, seed=job.seed)
     board.tape([])
     looks = (lambda _: None, lambda b: made.append((b.now / TICKS_PER_SECOND, *b.taped())))
-    played = closed_loop.play_on(board, job, progress, [str(row["name"]) for row in native.signals()], looks)
+    played = closed_loop.play_on(
+        board, job, progress, [str(row["name"]) for row in native.signals()], looks, image=image
+    )
     if not made:
         return None, played
     seconds, samples, writes, inputs = made[0]
