@@ -1,12 +1,17 @@
 """`stillspin image show`: what an image loads, how full the memories are, and its code as instructions."""
 
+import struct
+
 import flash_files
 import pytest
 from c28x_chip import linked_file, program
+from elf_files import elf
 from typer.testing import CliRunner
 
 from stillspin import cli
 from stillspin.c28x.program import assemble
+from stillspin.flash import coff as coff_files
+from stillspin.flash.memories import Extent, Filled
 from stillspin.flash.program import Block
 
 START = 0x3F4000
@@ -33,35 +38,116 @@ def show(tmp_path, there, *arguments):
     return result.exit_code, result.stdout.splitlines(), result.stderr
 
 
-def test_what_is_loaded_and_how_full_the_memories_are(tmp_path):
+def test_sections_and_how_full_the_memories_are(tmp_path):
     count = len(blocks()[1].words)
     status, lines, _ = show(tmp_path, blocks())
     assert status == 0
     assert lines == [
         f"some.out: COFF, {count + 5} words, entry 0x3F7FF6",
-        "0x3E8000 to 0x3E8002       3 words  sector D",
-        f"0x3F4000 to 0x{START + count - 1:06X}  {count:>6} words  sector A",
-        "0x3FBFFE to 0x3FBFFF       2 words  H0 high",
+        "section               words  loaded to  runs at   memory",
+        ".ebss                   100  -          0x008000  L0",
+        "sect0                     3  0x3E8000   0x3E8000  sector D",
+        f"sect1                {count:>6}  0x3F4000   0x3F4000  sector A",
+        "sect2                     2  0x3FBFFE   0x3FBFFE  H0 high",
+        "L0           100 of 4096 words",
+        "H0             2 of 8192 words",
+        "RAM          102 of 18432 words",
         "sector D       3 of 16384 words",
         f"sector A  {count:>6} of 16384 words",
-        "H0 high        2 of 8192 words",
+        f"flash     {count + 3:>6} of 65536 words",
     ]
+
+
+def test_what_runs_elsewhere_than_it_is_loaded_takes_both(tmp_path):
+    path = tmp_path / "some.out"
+    moved = {0x3F4000: (0x9000, 0x3F4000)}  # run address, load address
+    there = [Block(0x3F4000, (1, 2, 3)), Block(0x3F5000, (4,))]
+    path.write_bytes(flash_files.coff(there, heads_of=lambda address: moved.get(address, (address, address))))
+    lines = CliRunner().invoke(cli.app, ["image", "show", str(path)]).stdout.splitlines()
+    assert "sect0                     3  0x3F4000   0x009000  sector A, runs in L1" in lines
+    assert "L1             3 of 4096 words" in lines
+    assert "sector A       4 of 16384 words" in lines
+
+
+def test_elf_tells_load_addresses_by_its_program_headers(tmp_path):
+    path = tmp_path / "some.out"
+    path.write_bytes(elf([Block(0x3F4000, (1, 2)), Block(0x9000, (3, 4, 5))], load={1: 0x3F5000 - 0x9000}))
+    lines = CliRunner().invoke(cli.app, ["image", "show", str(path)]).stdout.splitlines()
+    assert [line.split()[1:5] for line in lines[3:5]] == [
+        ["3", "0x3F5000", "0x009000", "sector"],
+        ["100", "-", "0x008000", "L0"],
+    ]
+    assert "L1             3 of 4096 words" in lines
+    assert "sector A       5 of 16384 words" in lines
+
+
+def test_names_of_elf_and_coff_s_long_ones(tmp_path):
+    lines = CliRunner().invoke(cli.app, ["image", "show", str(linked_file(tmp_path, "control"))]).stdout.splitlines()
+    assert lines[2].split()[0] == ".text0"
+    rows = coff_files.sections(with_name(flash_files.coff(blocks()), 2, "a_section_with_a_long_name"))
+    assert next(name for name, _, run, _ in rows if run == 0x3E8000) == "a_section_with_a_long_name"
+
+
+def with_name(data, index, name):
+    """The COFF file with a name of a section in its table of strings, behind all."""
+    at = 22 + 28 + 48 * index
+    table = struct.pack("<I", len(data)) + struct.pack("<I", 0)
+    return data[:8] + table + data[16:at] + struct.pack("<II", 0, 4) + data[at + 8 :] + bytes(4) + name.encode() + b"\0"
+
+
+def test_what_takes_no_memory_is_left_out():
+    kinds = {0x01: False, 0x02: True, 0x10: False, 0x20: True, 0x80: True}
+    for kind, shown in kinds.items():
+        data = bytearray(flash_files.coff([Block(0x3F4000, (1,))]))
+        struct.pack_into("<I", data, 22 + 28 + 48 * 2 + 40, kind)
+        assert (0x3F4000 in [run for _, _, run, _ in coff_files.sections(bytes(data))]) == shown, hex(kind)
+
+
+def test_a_word_in_two_sections_counts_once():
+    """L0 is there twice, and overlays share their words."""
+    extents = [Extent(0x8000, 10, loaded=False), Extent(0x3F8005, 10, loaded=True), Extent(0x8002, 3, loaded=False)]
+    assert list(Filled(extents).rows()) == [("L0", 15, 4096), ("RAM", 15, 18432)]
+
+
+def test_memories_that_are_not_loaded(tmp_path):
+    """Variables may lie on registers and tables in the boot ROM, but no content; the OTP takes it."""
+    places = (0x0D00, 0x7100, 0x3FF000, 0x3D7800, 0x3D7C00, 0x010000)
+    assert [Filled([Extent(place, 2, loaded=False)]).outside for place in places] == [0, 0, 0, 0, 2, 2]
+    assert [Filled([Extent(place, 2, loaded=True)]).outside for place in places] == [2, 2, 2, 0, 2, 2]
+    status, lines, _ = show(tmp_path, [Block(0x3D7800, (1, 2))])
+    assert status == 0
+    assert "OTP            2 of 1024 words" in lines
+
+
+def test_tables_in_the_boot_rom_are_said_to_read_as_0(tmp_path):
+    data = bytearray(flash_files.coff([Block(0x3FF000, (1,) * 64), Block(0x3F4000, (1,))]))
+    struct.pack_into("<I", data, 22 + 28 + 48 * 2 + 40, 0x02)  # NOLOAD, as TI's linker command files have it
+    path = tmp_path / "some.out"
+    path.write_bytes(bytes(data))
+    done = CliRunner().invoke(cli.app, ["image", "show", str(path)])
+    assert done.exit_code == 0
+    assert "sect0                    64  -          0x3FF000  boot ROM" in done.stdout.splitlines()
+    assert done.stdout.splitlines()[-1].startswith("sect0: tables of the boot ROM, which the virtual chip has not")
 
 
 def test_a_block_over_a_border_counts_in_both(tmp_path):
     _, lines, _ = show(tmp_path, [Block(0x3EBFFF, (1, 2, 3))])
-    assert lines[1:] == [
-        "0x3EBFFF to 0x3EC001       3 words  sector D to sector C",
-        "sector D       1 of 16384 words",
-        "sector C       2 of 16384 words",
-    ]
+    assert lines[3].endswith("0x3EBFFF   0x3EBFFF  sector D to sector C")
+    assert lines[-3:-1] == ["sector D       1 of 16384 words", "sector C       2 of 16384 words"]
 
 
 def test_words_in_no_memory_are_said_and_make_the_status(tmp_path):
     status, lines, _ = show(tmp_path, [Block(0x007FFE, (1, 2, 3))])
     assert status == 1
     assert lines[-1] == "2 words in no memory of the chip"
-    assert lines[1].endswith("nowhere to L0")
+    assert lines[3].endswith("registers to L0")
+
+
+def test_a_format_without_sections_has_blocks(tmp_path):
+    path = tmp_path / "some.hex"
+    path.write_bytes(flash_files.intel_hex(blocks()))
+    lines = CliRunner().invoke(cli.app, ["image", "show", str(path)]).stdout.splitlines()
+    assert lines[2] == "(block)                   3  0x3E8000   0x3E8000  sector D"
 
 
 def test_code_is_listed_as_instructions(tmp_path):

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Annotated
 
 import typer
@@ -13,9 +12,11 @@ from stillspin.commands import image_assemble, image_inject, image_replay, image
 from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
-from stillspin.flash import layout
+from stillspin.flash import memories, sections
 from stillspin.flash.files import read_program
-from stillspin.flash.program import Block, Program
+from stillspin.flash.memories import Extent, Filled
+from stillspin.flash.program import Program
+from stillspin.flash.sections import Section
 from stillspin.one_line_errors import OneLineErrors
 from stillspin.options import ImageArgument
 
@@ -32,30 +33,37 @@ app.command(name="record")(image_replay.record)
 app.command(name="replay")(image_replay.replay)
 app.command(name="assemble")(image_assemble.assemble)
 
-PLACES = (
-    *(("M0", range(0x000000, 0x000400)), ("M1", range(0x000400, 0x000800)), ("L0", range(0x008000, 0x009000))),
-    *(("L1", range(0x009000, 0x00A000)), ("H0", range(0x00A000, 0x00C000))),
-    *((f"sector {sector.name}", sector.words) for sector in layout.SECTORS),
-    ("sector A", layout.SECTOR_A),
-    *(("L0 high", range(0x3F8000, 0x3F9000)), ("L1 high", range(0x3F9000, 0x3FA000))),
-    ("H0 high", range(0x3FA000, 0x3FC000)),
-)
-"""The memories of an F2808 that a program is loaded to; L0, L1 and H0 are there twice, as the same words."""
-NOWHERE = "nowhere"
+IN_ROM = "boot ROM"
 
 
-def _place(address: int) -> str:
-    return next((name for name, words in PLACES if address in words), NOWHERE)
+def _memory(section: Section) -> str:
+    """Where a section lies, loaded and running."""
+    return ", runs in ".join(_within(extent) for extent in section.extents())
 
 
-def _used(program: Program) -> Counter[str]:
-    """Words by the memory they are in."""
-    return Counter(_place(address) for block in program.blocks for address in range(block.address, block.end))
-
-
-def _within(block: Block) -> str:
-    first, last = _place(block.address), _place(block.end - 1)
+def _within(extent: Extent) -> str:
+    first, last = memories.name(extent.address), memories.name(extent.address + extent.count - 1)
     return first if first == last else f"{first} to {last}"
+
+
+def _say(there: Sequence[Section]) -> int:
+    """Sections and how full the memories are; gives how many words are in none."""
+    print(f"{'section':<20}{'words':>7}  {'loaded to':<10} {'runs at':<9} memory")
+    for section in there:
+        load = "-" if section.load is None else f"0x{section.load:06X}"
+        print(f"{section.name:<20}{section.words:>7}  {load:<10} 0x{section.run:06X}  {_memory(section)}")
+    filled = Filled(extent for section in there for extent in section.extents())
+    for name, used, size in filled.rows():
+        print(f"{name:<9} {used:>6} of {counted(size, 'word')}")
+    if filled.outside:
+        print(f"{counted(filled.outside, 'word')} in no memory of the chip")
+    in_rom = [section.name for section in there if memories.name(section.run) == IN_ROM]
+    if in_rom:
+        print(
+            f"{', '.join(in_rom)}: tables of the boot ROM, which the virtual chip has not: they read as 0. Link them "
+            "into flash to run the image there (docs/c28x.md)"
+        )
+    return filled.outside
 
 
 def _code(program: Program, address: int, lines: int) -> Iterator[str]:
@@ -92,7 +100,7 @@ def show(
     ] = "",
     lines: Annotated[int, typer.Option("--lines", min=1, max=65536, help="As many lines of it.")] = 24,
 ) -> None:
-    """Say what an image loads and how full the chip's memories are; exit status 1 when something is in none of them."""
+    """Say what an image loads where, where it runs, and how full the memories are; exit status 1: some is in none."""
     program = read_program(file)
     if code:
         for line in _code(program, _address(code), lines):
@@ -100,14 +108,5 @@ def show(
         return
     entry = "" if program.entry is None else f", entry 0x{program.entry:06X}"
     print(f"{file.name}: {program.kind}, {counted(program.size, 'word')}{entry}")
-    for block in program.blocks:
-        print(
-            f"0x{block.address:06X} to 0x{block.end - 1:06X}  {counted(len(block.words), 'word'):>12}  {_within(block)}"
-        )
-    used = _used(program)
-    for name, words in PLACES:
-        if used[name]:
-            print(f"{name:<9} {used[name]:>6} of {counted(len(words), 'word')}")
-    if used[NOWHERE]:
-        print(f"{counted(used[NOWHERE], 'word')} in no memory of the chip")
+    if _say(sections.read(file, program)):
         raise typer.Exit(ExitCode.SHORT)

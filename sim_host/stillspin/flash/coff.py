@@ -31,6 +31,9 @@ _EXECUTABLE = 0x0002
 _NOT_LOADED = 0x0001 | 0x0002 | 0x0010 | 0x0080
 """Dummy sections, those of another load, those that are only copied by a loader, and those without content."""
 
+_NO_MEMORY = 0x0001 | 0x0010
+"""Of these, those that the linker gives no memory: dummies, and debug information."""
+
 
 def read(data: bytes, name: str) -> Program:
     """Read a file.
@@ -64,6 +67,21 @@ def _loaded(data: bytes, count: int, optional: int) -> Iterator[tuple[int, int, 
         _, physical, virtual, size, raw, _, _, _, _, kind, _, _ = _SECTION.unpack_from(data, at)
         if size and raw and not kind & _NOT_LOADED:
             yield _load_and_run(physical, virtual)[0], size, raw
+
+
+def sections(data: bytes) -> Iterator[tuple[str, int, int, int | None]]:
+    """Of every section that takes memory: name, words, where it runs, and where it is loaded if it is.
+
+    Raises:
+        struct.error: the file is cut short.
+    """
+    count, optional = _HEADER.unpack_from(data)[1], _HEADER.unpack_from(data)[5]
+    for index in range(count):
+        at = _HEADER.size + optional + index * _SECTION.size
+        name, physical, virtual, size, raw, _, _, _, _, kind, _, _ = _SECTION.unpack_from(data, at)
+        if size and not kind & _NO_MEMORY:
+            load, run = _load_and_run(physical, virtual)
+            yield text(name, data) or "?", size, run, load if raw and not kind & _NOT_LOADED else None
 
 
 def _load_and_run(physical: int, virtual: int) -> tuple[int, int]:

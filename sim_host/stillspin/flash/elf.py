@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from stillspin.errors import InputError
@@ -27,6 +28,8 @@ _SYMBOL = struct.Struct("<IIIBBH")
 _LOAD = 1
 _ABSOLUTE = 0xFFF1
 _CONTENT = 1
+_NO_CONTENT = 8
+_ALLOCATED = 2
 _SYMBOL_TABLE = 2
 _INSTRUCTIONS = 4
 _NAMED = {0, 2}
@@ -132,6 +135,52 @@ def section(data: bytes, wanted: str) -> Iterator[bytes]:
     for name, kind, _, _, at, octets, *_ in sections:
         if kind == _CONTENT and _text(data, strings + name) == wanted:
             yield data[at : at + octets]
+
+
+def sections(data: bytes) -> Iterator[tuple[str, int, int, int | None]]:
+    """Of every section that takes memory: name, words, where it runs, and where it is loaded if it is.
+
+    Segments that have more than their sections follow as a whole. Raises as `functions` does.
+    """
+    header, heads = _header(data), _sections(data)
+    names = _HEADER.unpack_from(data)[13]
+    strings = heads[names][4] if names < len(heads) else len(data)
+    left = [_Piece(*piece) for piece in _pieces(data, header)]
+    for name, kind, flags, address, _, octets, *_ in heads:
+        if not flags & _ALLOCATED or octets < 2:
+            continue
+        loaded = kind != _NO_CONTENT
+        load, words = None, octets // 2
+        for piece in left:
+            if loaded == (piece.load is not None) and piece.run <= address < piece.run + piece.words:
+                load = None if piece.load is None else piece.load + address - piece.run
+                piece.named += words
+                break
+        yield _text(data, strings + name) or "?", words, address, load
+    for piece in left:
+        if piece.named < piece.words:
+            yield "(segment)", piece.words, piece.run, piece.load
+
+
+@dataclass
+class _Piece:
+    """What a segment has in the file, or takes beyond that; `named` words of it are in sections."""
+
+    run: int
+    words: int
+    load: int | None
+    named: int = 0
+
+
+def _pieces(data: bytes, header: _Header) -> Iterator[tuple[int, int, int | None]]:
+    for index in range(header.segment_count):
+        kind, _, run, load, octets, all_octets, _, _ = _SEGMENT.unpack_from(
+            data, header.segments + index * _SEGMENT.size
+        )
+        if kind == _LOAD and octets:
+            yield run, octets // 2, load
+        if kind == _LOAD and all_octets > octets:
+            yield run + octets // 2, (all_octets - octets) // 2, None
 
 
 def _sections(data: bytes) -> list[tuple[int, ...]]:

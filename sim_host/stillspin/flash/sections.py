@@ -1,0 +1,43 @@
+"""The sections of a linked file: what is loaded where, where it runs, and what takes memory without being loaded."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from stillspin.flash import coff, elf
+from stillspin.flash.memories import Extent
+from stillspin.flash.program import Program
+
+
+@dataclass(frozen=True)
+class Section:
+    """Words of one name."""
+
+    name: str
+    words: int
+    run: int
+    """The address at which the program has it."""
+    load: int | None
+    """The address at which the file's content is put; None without content, as of .ebss and .stack."""
+
+    def extents(self) -> Iterator[Extent]:
+        """What it takes of the memories: where it is loaded, and where it runs when that is elsewhere."""
+        if self.load is not None:
+            yield Extent(self.load, self.words, loaded=True)
+        if self.run != self.load:
+            yield Extent(self.run, self.words, loaded=False)
+
+
+def read(file: Path, program: Program) -> list[Section]:
+    """Those of a file in its order; of a format without sections, or with damaged ones, the blocks that it loads."""
+    data = file.read_bytes()
+    kind = elf if data.startswith(elf.MAGIC) else coff if data.startswith(coff.MAGIC) else None
+    try:
+        if kind:
+            return [Section(*row) for row in kind.sections(data)]
+    except struct.error:
+        pass
+    return [Section("(block)", len(block.words), block.address, block.address) for block in program.blocks]
