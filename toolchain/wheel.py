@@ -17,7 +17,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCE = ROOT / "sim_host"
-FOLDERS = ("stillspin", "motors", "profiles", "scenarios", "schemes")
+FOLDERS = ("stillspin", "faults", "motors", "profiles", "scenarios", "schemes", "spreads")
 _BUILD = "import sys; from setuptools import build_meta; print(build_meta.build_wheel(sys.argv[1]))"
 TABLES = ("chip/c28x",)  # of the virtual chip: their tables alone
 _NOT_COPIED = shutil.ignore_patterns("_core*", "boards", "__pycache__", "*.pyc")

@@ -119,6 +119,15 @@ SchemeOption = Annotated[
 ]
 
 
+CommissionOption = Annotated[
+    bool,
+    typer.Option(
+        "--commission/--no-commission",
+        help="Let the drive measure machine and inverter first where the profile differs from the nameplate.",
+    ),
+]
+
+
 PaceOption = Annotated[
     float,
     typer.Option(

@@ -38,6 +38,7 @@ BAD = {
     "board": ("board", "--profile", "bnch"),
     "startup-matrix": ("startup-matrix", "--way", "sideways"),
     "round-trips": ("round-trips", "--runs", "0"),
+    "campaign": ("campaign", "--motors", "A,"),
     "params dump": ("params", "dump"),
     "params diff": ("params", "diff", "defaults"),
     "params load": ("params", "load", "x.toml"),

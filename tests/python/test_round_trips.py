@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from stillspin import cli
+from stillspin import cli, wilson
 from stillspin.commands import round_trips
 from stillspin.runs import records
 
@@ -38,7 +38,7 @@ def test_more_trips_begin_with_those_of_fewer():
 @pytest.mark.parametrize(("lost", "count"), [(0, 50), (1, 50), (7, 20), (20, 20)])
 def test_the_interval_is_where_the_count_is_196_deviations_off(lost, count):
     """Wilson's ends solve (lost/n − p)² = 1.96² p (1 − p)/n."""
-    low, high = (end / 100.0 for end in round_trips.interval(lost, count))
+    low, high = (end / 100.0 for end in wilson.interval(lost, count))
     assert 0.0 <= low < high <= 1.0
     assert low - 1e-12 <= lost / count <= high + 1e-12
     for end in (low, high):

@@ -6,6 +6,7 @@ import typer
 
 from stillspin.commands import (
     board,
+    campaign,
     campaigns,
     can_bus,
     commission,
@@ -36,6 +37,7 @@ def register(app: typer.Typer) -> None:
     app.command(name="board")(board.board)
     app.command(name="startup-matrix")(startup.startup_matrix)
     app.command(name=round_trips.NAME)(round_trips.round_trips)
+    app.command(name=campaign.NAME, epilog=campaign.EXAMPLES)(campaign.campaign)
     app.add_typer(params.app, name="params")
     app.add_typer(motor.app, name="motor")
     app.add_typer(image.app, name="image")

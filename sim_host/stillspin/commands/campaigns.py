@@ -23,6 +23,7 @@ from stillspin.image.opened import Image
 from stillspin.options import (
     ChangeOption,
     ClusterOption,
+    CommissionOption,
     JobsOption,
     OtherMotorOption,
     ParamsOption,
@@ -83,7 +84,7 @@ def _image(file: Path | None) -> Image | None:
 
 def run(
     *,
-    scenario: Annotated[str, typer.Argument(help="Id of the scenario, such as A10.")],
+    scenario: Annotated[str, typer.Argument(help="Id of the scenario, such as A10, or a TOML file.")],
     profile_name: ProfileOption = "bench",
     motor: OtherMotorOption = None,
     seed: SeedOption = 1,
@@ -97,7 +98,7 @@ def run(
     image: RunImageOption = None,
 ) -> None:
     """Run one scenario: figures of merit, plots, and a Parquet file per run."""
-    chosen = scenario_file.load(scenario)
+    chosen = _scenario(scenario)
     where = out or Path(f"results-{chosen.id}")
     _carry_out(
         [on_motor(motor, chosen)],
@@ -112,6 +113,12 @@ def run(
             image=_image(image),
         ),
     )
+
+
+def _scenario(name_or_path: str) -> Scenario:
+    """One that ships, or one in a file."""
+    is_path = name_or_path.endswith(".toml") or "/" in name_or_path
+    return scenario_file.read(Path(name_or_path)) if is_path else scenario_file.load(name_or_path)
 
 
 def reproduce(
@@ -135,13 +142,7 @@ def reproduce(
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the report.")] = Path("results"),
     jobs: JobsOption = None,
     cluster: ClusterOption = "",
-    commission_first: Annotated[
-        bool,
-        typer.Option(
-            "--commission/--no-commission",
-            help="Let the drive measure machine and inverter first where the profile differs from the nameplate.",
-        ),
-    ] = True,
+    commission_first: CommissionOption = True,
     nameplate: Annotated[
         bool,
         typer.Option("--nameplate/--no-nameplate", help="Run everything on the nameplate's parameters, too."),

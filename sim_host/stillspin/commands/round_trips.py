@@ -12,13 +12,14 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from stillspin import resources
+from stillspin import resources, wilson
 from stillspin.cases.scenario import Figure, Goal, Reached, Run, Scenario
 from stillspin.counted import counted
 from stillspin.exit_codes import ExitCode
 from stillspin.options import (
     ChangeOption,
     ClusterOption,
+    CommissionOption,
     JobsOption,
     ParamsOption,
     ProfileOption,
@@ -82,25 +83,14 @@ def outcome(result: ScenarioResult) -> dict[str, Any]:
     return {"trips": len(titles), "lost": lost, "position_error_peak": max(peaks, default=None)}
 
 
-def interval(lost: int, count: int) -> tuple[float, float]:
-    """Share of trips that are lost, in percent: from and to at 95 %, by Wilson, which holds for none lost, too.
-
-    It is about the angles that may be drawn: all trips have the noise of one seed.
-    """
-    share, z2 = lost / count, 1.96**2
-    middle = share + z2 / 2 / count
-    half = 1.96 * math.sqrt(share * (1 - share) / count + z2 / 4 / count / count)
-    low, high = (100 * (middle + side) / (1 + z2 / count) for side in (-half, half))
-    return max(low, 0.0), min(high, 100.0)
-
-
 def _say(found: dict[str, Any], out: Path) -> None:
     for each in found["lost"]:
         print(f"stillspin: {each['trip']}, {each['title']}: lost: {each['why']}", file=sys.stderr)
     peak = found["position_error_peak"]
     of_others = "" if peak is None else f"; position error of the others at most {number(peak)}° el"
-    low, high = interval(len(found["lost"]), found["trips"])
-    share = f"{low:.1f} to {high:.1f} % at 95 %"
+    share = wilson.words(
+        len(found["lost"]), found["trips"]
+    )  # of the angles that may be drawn: the noise is of one seed
     print(f"{len(found['lost'])} of {counted(found['trips'], 'trip')} lost ({share}){of_others}; see {out}")
 
 
@@ -124,13 +114,7 @@ def round_trips(
     change: ChangeOption = None,
     params: ParamsOption = None,
     scheme: SchemeOption = None,
-    commission_first: Annotated[
-        bool,
-        typer.Option(
-            "--commission/--no-commission",
-            help="Let the drive measure machine and inverter first where the profile differs from the nameplate.",
-        ),
-    ] = True,
+    commission_first: CommissionOption = True,
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the results.")] = Path("results-trips"),
     jobs: JobsOption = None,
     cluster: ClusterOption = "",
