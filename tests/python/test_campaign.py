@@ -389,7 +389,7 @@ def test_a_fault_that_the_drive_says_is_counted_apart_and_a_motor_that_it_refuse
     assert done.exit_code == 1, done.output
     assert (found["motors"]["A"]["plain"]["good"], found["motors"]["B-SPM"]["plain"]["refused"]) == (1, 1)
     assert any("polarity" in reason for reason in found["refusals"])
-    assert "all 2 motors: 0 of 1 case failed" in done.stdout
+    assert "all of them: 0 of 1 case failed" in done.stdout
     assert call(*words, "--resume", "--may-refuse", "50").exit_code == 0
 
 

@@ -78,7 +78,7 @@ def lines(rows: Sequence[Row], motors: Sequence[str]) -> list[str]:
     """The outcome for the terminal: motor by motor, then all of them together."""
     groups = [(motor, [row for row in rows if row.motor == motor]) for motor in motors]
     if len(motors) > 1:
-        groups.append((f"all {len(motors)} motors", list(rows)))
+        groups.append(("all of them", list(rows)))
     found = []
     for name, group in groups:
         if plain(group):
