@@ -20,7 +20,7 @@ PICTURES_OUT := out/pictures
 # A Python path set for something else must not reach into .venv.
 unexport PYTHONPATH PYTHONHOME
 
-.PHONY: help setup build test demo bench isr-cost image-check int16 vectors cppcheck prove mcdc mutants verify \
+.PHONY: help setup build test demo bench catalogue isr-cost image-check int16 vectors cppcheck prove mcdc mutants verify \
 	loss fuzz fuzz16 wheel figures figures-long pictures docs lint format lock clean
 
 help: ## list these targets
@@ -49,6 +49,10 @@ bench: build ## measure how fast the simulation runs
 	@bash toolchain/setup.sh build bench
 	@$(PYTHON) toolchain/keep.py speed bash toolchain/bench.sh $(BUILD)
 	@$(PYTHON) toolchain/keep.py c28x tests/python/c28x_speed.py build/bench/c28x.json
+
+catalogue: build ## ask the drive about every motor of the catalogue: what works, what is refused and why
+	@mkdir -p build/catalogue
+	@$(PYTHON) toolchain/keep.py catalogue .venv/bin/stillspin motor list --json build/catalogue/figures.json
 
 isr-cost: build ## count the interrupts' instructions on a Cortex-M3 (QEMU): cycles of a period; bit for bit the native run
 	@bash toolchain/setup.sh build cortex

@@ -52,7 +52,7 @@ def list_() -> None:
     """The scenarios, the profiles and the motors."""
     tables.scenarios(scenario_file.load(identifier) for identifier in scenario_file.ids())
     print(f"\nprofiles: {', '.join(resources.names('profiles'))}")
-    print(f"motors: {', '.join(resources.names('motors'))}")
+    print(f"motors: {', '.join(resources.names('motors'))}; other people's: stillspin motor list")
 
 
 @app.command()

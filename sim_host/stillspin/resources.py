@@ -11,9 +11,13 @@ PACKAGE = Path(__file__).resolve().parent
 DEFAULT_MOTOR = "A"
 """Where nothing is said. Only the files of the motors know what it is."""
 
+CATALOGUE = "motors/catalogue"
+_FURTHER = {"motors": CATALOGUE, "profiles": "motors/profiles"}
+"""Where more of a kind is, known by name: other people's motors, and for each of them a profile of its name."""
+
 
 def directory(name: str) -> Path:
-    """The directory `name` ("motors", "profiles", "scenarios" or "schemes") that ships with this package.
+    """The directory `name` ("motors", "profiles", "scenarios", "schemes", or in one of them) of this package.
 
     Raises:
         FileNotFoundError: the installation is damaged.
@@ -45,12 +49,13 @@ def find(kind: str, name_or_path: str) -> Path:
         if not path.is_file():
             raise InputError(f"{word} '{name_or_path}': there is no such file")
         return path
-    known = names(kind)
+    folders = [kind, *([_FURTHER[kind]] if kind in _FURTHER else [])]
+    known = {name: directory(folder) / f"{name}.toml" for folder in folders for name in names(folder)}
     if name_or_path not in known:
         raise InputError(
             f"there is no {word} '{name_or_path}'{did_you_mean(name_or_path, known)}, or a path to a .toml file"
         )
-    return directory(kind) / f"{name_or_path}.toml"
+    return known[name_or_path]
 
 
 def natural_key(name: str) -> tuple[tuple[int, str], ...]:

@@ -1,8 +1,8 @@
 """Pieces of pages that are templates, and the figures that they name.
 
 A template reaches the figures of a record (book/records.py) as `data.NAME`, whether the drive fits its chip as `fit`,
-and the files of motors and profiles as `motors` and `profiles`; `value(…)` and the others below write a value as
-the book does. A figure that misses its goal is bold.
+the files of motors and profiles as `motors` and `profiles`, the motors of others as `catalogue`; `value(…)` and the
+others below write a value as the book does. A figure that misses its goal is bold.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError, TemplateNotFound
 
 from book import chip, records
+from stillspin import catalogue
 
 TEMPLATES = "toolchain/book/pieces"
 
@@ -161,6 +162,7 @@ def environment(root: Path) -> Environment:
     data = {name: record["figures"] for name, record in records.load(root).items()}
     made.globals.update(data=data, **{each.__name__: each for each in USED})
     made.globals.update(motors=_files(root / "sim_host/motors"), profiles=_files(root / "sim_host/profiles"))
+    made.globals["catalogue"] = catalogue.entries(root / "sim_host/motors/catalogue")
     if {"image", "isr-cost"} <= data.keys():
         made.globals["fit"] = chip.fit(root, data["image"], data["isr-cost"])
     return made

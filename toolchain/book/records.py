@@ -78,6 +78,11 @@ COMMANDS = {
     ),
     "speed": Made("make bench", "build/bench/figures.json", RUNS),
     "c28x": Made("make bench", "build/bench/c28x.json", ("sim_host/chip", "tests/c28x", "tests/python/c28x_speed.py")),
+    "catalogue": Made(
+        "make catalogue",
+        "build/catalogue/figures.json",
+        (*RUNS, "sim_host/motors", "sim_host/stillspin/catalogue.py"),
+    ),
     "pictures": Made(
         "make pictures",
         PICTURES,

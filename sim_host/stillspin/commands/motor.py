@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from stillspin import core
+from stillspin import catalogue, core
 from stillspin.called import called
 from stillspin.cases import flux_table, motor_check, profile, questions
 from stillspin.cases.flux_table import Columns
@@ -18,8 +20,34 @@ from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.one_line_errors import OneLineErrors
 from stillspin.options import ProfileOption
+from stillspin.report import tables
 
-app = typer.Typer(cls=OneLineErrors, help="Motor files: make one, check one.", rich_markup_mode=None)
+app = typer.Typer(cls=OneLineErrors, help="Motor files: make one, check one; the catalogue.", rich_markup_mode=None)
+
+
+@app.command(name="list")
+def list_(
+    *,
+    checked: Annotated[
+        bool, typer.Option("--check", help="Say of each what `motor check` says with the profile of its name.")
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write for programs what --check says.")
+    ] = None,
+) -> None:
+    """The catalogue: motors of public data that `--motor` knows by name, and where the data are from.
+
+    Each has a profile of the same name, a power stage and sensors that suit it: `--motor NAME --profile NAME`.
+    """
+    motors = catalogue.entries()
+    verdicts = {}
+    if checked or out:
+        native = core.load()
+        verdicts = {entry.name: catalogue.verdict(entry.name, native) for entry in motors}
+    tables.catalogue(motors, verdicts)
+    if out:
+        content = {name: asdict(verdict) for name, verdict in verdicts.items()}
+        parameter_file.write(out, json.dumps(content, indent=1, ensure_ascii=False) + "\n")
 
 
 @app.command()

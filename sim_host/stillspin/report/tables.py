@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from rich.console import Console
@@ -12,6 +12,8 @@ from rich.text import Text
 from stillspin.cases.effects import ALONE, WITHOUT
 from stillspin.cases.scenario import Scenario
 from stillspin.cases.variant import Beside
+from stillspin.catalogue import Entry as MotorEntry
+from stillspin.catalogue import Verdict
 from stillspin.counted import counted
 from stillspin.drive.scope import Capture
 from stillspin.drive.table import Parameter
@@ -28,6 +30,7 @@ _RIGHT = {
     *("value", "before", "found", "paper", "goal", "runs", "default", "number", "paper scheme", "nameplate"),
     *("without", "alone"),
     *("starts", "failed", "steps", "steps/s", "backward", "sigma", "angle"),
+    *("V", "A", "kW", "rpm", "pole pairs", "Lq/Ld"),
 }
 
 
@@ -107,6 +110,17 @@ def scenarios(items: Iterable[Scenario]) -> None:
     table = _table("id", "motor", "runs", "scenario", "paper", "")
     for item in items:
         table.add_row(item.id, item.motor, str(len(item.runs)), item.title, item.paper_figure, _when(item))
+    _print(table)
+
+
+def catalogue(motors: Iterable[MotorEntry], verdicts: Mapping[str, Verdict]) -> None:
+    """Other people's motors; `verdicts` by name: what the drive says of each, in the place of its source."""
+    judged = ("motor check", "first reason") if verdicts else ("source",)
+    table = _table("motor", "V", "A", "kW", "rpm", "pole pairs", "Lq/Ld", "kind", *judged)
+    for motor in motors:
+        numbers = (motor.volts, motor.amperes, motor.kilowatts, motor.speed, motor.pole_pairs)
+        last = (verdicts[motor.name].word, verdicts[motor.name].reason) if verdicts else (motor.source,)
+        table.add_row(motor.name, *(f"{number:.5g}" for number in numbers), f"{motor.saliency:.2f}", motor.kind, *last)
     _print(table)
 
 
