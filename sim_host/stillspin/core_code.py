@@ -26,7 +26,10 @@ class NativeCode(Protocol):
         ...
 
     def spent(self) -> tuple[dict[int, Spent], dict[Interrupt, list[int]], int]:
-        """Cycles by address, cycles of each interrupt, and the highest stack pointer."""
+        """Cycles by address, cycles of each interrupt, and the highest stack pointer.
+
+        All addresses from 0x010000 to 0x3D77FF count as the first of them: an F2808 has nothing there.
+        """
         ...
 
     def within(self) -> dict[Interrupt, dict[int, int]]:
@@ -55,7 +58,7 @@ class NativeCode(Protocol):
         ...
 
     def trace(self, depth: int) -> None:
-        """Keep the last so many instructions from now on; 0 ends it."""
+        """Keep the last so many instructions from now on, until one traps as illegal; 0 keeps that one alone."""
         ...
 
     def traced(self) -> list[tuple[int, dict[str, int]]]:

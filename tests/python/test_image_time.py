@@ -127,7 +127,8 @@ def test_a_function_that_runs_from_ram_goes_by_its_name():
         0x8000: (5, 0, 0, 0),
         0x8001: (7, 1, 2, 3),
         0x8010: (9, 0, 0, 0),
-        0x7FFF: (2, 0, 0, 0),
+        0x07FF: (2, 0, 0, 0),
+        0x010000: (3, 0, 0, 0),
     }
     rows = timed.functions(there, {0x3F4000: "main", 0x8000: "control_isr", 0x8010: "helper"}, spent)
     assert [(row.name, row.cycles, row.copied) for row in rows] == [
@@ -135,7 +136,8 @@ def test_a_function_that_runs_from_ram_goes_by_its_name():
         ("helper", 9, True),
         ("main", 4, False),
     ]
-    assert timed.elsewhere(rows, spent) == (2, 0, 0, 0), "below the first name"
+    assert timed.elsewhere(rows, spent) == (2, 0, 0, 0), "in a memory without a name"
+    assert timed.outside(spent) == (3, 0, 0, 0)
 
 
 def test_bars_have_every_value():

@@ -14,6 +14,7 @@ void Core::reset() {
   r = Registers{};
   idle_ = nmi_ = false;
   stop_ = Stop::kNone;
+  if (profile_ != nullptr) profile_->abandon();
   jump(bus().vector(0, read32(kTableHigh)));
 }
 
@@ -123,6 +124,12 @@ void Core::take_interrupt(unsigned vector) {
     r.ier = static_cast<std::uint16_t>(r.ier & others);
   }
   jump(bus().vector(vector, read32((r.vmap ? kTableHigh : 0) + 2 * vector)));
+}
+
+void Core::note_trap(const Instruction& i) {
+  Registers before = r;
+  before.pc = i.address;
+  watch().note_trap(before, cycles);
 }
 
 void Core::return_from_interrupt() {

@@ -131,6 +131,8 @@ class Core : public MappedMemory, public Timing {
   std::uint32_t repeats_done = 0;
 
   void take_interrupt(unsigned vector);
+  /// The instruction is none: what led to it can be looked at (Watch::traced).
+  void note_trap(const Instruction& i);
   void return_from_interrupt();
   void wait_for_interrupt() { idle_ = r.idlestat = true; }
   void breakpoint(const Instruction& i);

@@ -135,6 +135,9 @@ void trap(Core& core, const Instruction& i) {
 }
 void intr(Core& core, const Instruction& i) { core.take_interrupt(i.constant + 1); }
 void intr_fixed(Core& core, const Instruction& i) { core.take_interrupt(i.constant); }
-void illegal(Core& core, const Instruction&) { core.take_interrupt(kVectorIllegal); }
+void illegal(Core& core, const Instruction& i) {
+  core.note_trap(i);
+  core.take_interrupt(kVectorIllegal);
+}
 
 }  // namespace stillspin::c28x::operations

@@ -5,6 +5,7 @@
 #define STILLSPIN_SIM_HOST_CHIP_C28X_PROFILE_HPP
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <utility>
@@ -33,13 +34,22 @@ struct Spent {
 
 class Profile {
  public:
-  /// Words at the bottom and at the top of memory; an F2808 has none between.
+  /// Words at the bottom and, from the OTP on, at the top of memory; an F2808 has none between: all addresses there
+  /// count as one, the first of them.
   static constexpr std::uint32_t kLow = 0x10000;
-  static constexpr std::uint32_t kHigh = 0x20000;
-  static constexpr std::uint32_t kHighBegin = 0x3E0000;
+  static constexpr std::uint32_t kHighBegin = 0x3D7800;
+  static constexpr std::uint32_t kHigh = 0x400000 - kHighBegin;
+  static constexpr std::uint32_t kBetween = kLow + kHigh;
+  static constexpr std::uint32_t kIndices = kBetween + 1;
 
-  static std::uint32_t index(std::uint32_t address) { return address < kLow ? address : kLow + address % kHigh; }
-  static std::uint32_t address(std::uint32_t index) { return index < kLow ? index : kHighBegin + index - kLow; }
+  static std::uint32_t index(std::uint32_t address) {
+    if (address < kLow) return address;
+    return address >= kHighBegin ? kLow + (address & 0x3FFFFF) - kHighBegin : kBetween;
+  }
+  static std::uint32_t address(std::uint32_t index) {
+    if (index < kLow) return index;
+    return index < kBetween ? kHighBegin + index - kLow : kLow;
+  }
 
   using Which = std::pair<unsigned, std::uint32_t>;  // vector and routine
   using ByIndex = std::vector<std::uint64_t>;
@@ -52,6 +62,7 @@ class Profile {
   }
 
   void enter(unsigned vector, std::uint32_t routine, std::uint64_t now) {
+    if (open_.size() == kDeepest) open_.clear();
     open_.push_back({{vector, routine}, now, 0});
     look_inside();
   }
@@ -66,12 +77,21 @@ class Profile {
     left_ = true;
   }
 
-  std::vector<Spent> spent = std::vector<Spent>(kLow + kHigh);
+  /// The core was reset: nothing that was entered returns.
+  void abandon() {
+    open_.clear();
+    look_inside();
+  }
+
+  std::vector<Spent> spent = std::vector<Spent>(kIndices);
   std::uint16_t highest_stack = 0;
   std::map<Which, std::vector<std::uint32_t>> interrupts;  // cycles of each
   std::map<Which, ByIndex> within;                         // cycles by index, without those of the entry
 
  private:
+  /// More contexts than fit into all of the stack's reach: of those before nobody returns any more.
+  static constexpr std::size_t kDeepest = 0x10000 / 14;
+
   struct Open {
     Which which;
     std::uint64_t begin;
@@ -83,7 +103,7 @@ class Profile {
     inside_ = nullptr;
     if (open_.empty()) return;
     inside_ = &within[open_.back().which];
-    inside_->resize(kLow + kHigh);
+    inside_->resize(kIndices);
   }
 
   std::vector<Open> open_;

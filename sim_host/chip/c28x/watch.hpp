@@ -34,10 +34,19 @@ class Watch {
   /// Other code than the memory's is at this address; whoever runs the core carries it out.
   void replace_code_at(std::uint32_t address) { mark(address, kReplaced, true); }
 
-  /// Keeps the last so many instructions, 0 for none.
+  /// Keeps the last so many instructions, 0 for none, until one traps as illegal.
   void trace(std::size_t depth) {
     trace_.assign(depth, {});
     traced_ = 0;
+    trapped_ = false;
+  }
+  /// An instruction that is none is going to trap. It ends the trace as its last, whatever the depth: what comes behind
+  /// the first of them is seldom what anybody wrote.
+  void note_trap(const Registers& before, std::uint64_t cycles) {
+    if (trapped_) return;
+    trapped_ = true;
+    if (trace_.empty()) trace_.resize(1);
+    if (traced_ == 0 || trace_[(traced_ - 1) % trace_.size()].registers.pc != before.pc) keep(before, cycles);
   }
   /// Oldest first.
   std::vector<Traced> traced() const {
@@ -49,7 +58,7 @@ class Watch {
 
   /// Before an instruction: whether to stop. The one at which it stopped is not stopped at again when it goes on.
   bool stops(const Registers& r, std::uint64_t cycles) {
-    const std::uint8_t marked = marks_[Profile::index(r.pc)];
+    const std::uint8_t marked = mark_at(r.pc);
     const bool passing = r.pc == passing_;
     passing_ = kNowhere;
     if (!passing && (left_ == 0 || (marked & kStop) != 0)) {
@@ -61,7 +70,7 @@ class Watch {
     replaced_ = (marked & kReplaced) != 0;
     if (replaced_) return true;
     if (left_ != kUnlimited && left_ > 0) --left_;
-    if (!trace_.empty()) trace_[traced_++ % trace_.size()] = {cycles, r};
+    if (!trace_.empty() && !trapped_) keep(r, cycles);
     return false;
   }
   /// What the last stop was for: code that is replaced, rather than a debugger.
@@ -75,17 +84,23 @@ class Watch {
   static constexpr std::uint8_t kReplaced = 2;
   static constexpr std::uint32_t kNowhere = ~0U;
 
+  // Where an F2808 has no memory nothing is marked: there is no instruction before which to stop.
   void mark(std::uint32_t address, std::uint8_t bit, bool on) {
-    std::uint8_t& marked = marks_[Profile::index(address & kProgramMask)];
+    const std::uint32_t index = Profile::index(address & kProgramMask);
+    if (index == Profile::kBetween) return;
+    std::uint8_t& marked = marks_[index];
     marked = static_cast<std::uint8_t>(on ? marked | bit : marked & ~bit);
   }
+  std::uint8_t mark_at(std::uint32_t address) const { return marks_[Profile::index(address)]; }
+  void keep(const Registers& before, std::uint64_t cycles) { trace_[traced_++ % trace_.size()] = {cycles, before}; }
 
-  std::vector<std::uint8_t> marks_ = std::vector<std::uint8_t>(Profile::kLow + Profile::kHigh);
+  std::vector<std::uint8_t> marks_ = std::vector<std::uint8_t>(Profile::kIndices);
   std::uint64_t left_ = kUnlimited;
   std::uint32_t passing_ = kNowhere;
   bool replaced_ = false;
   std::vector<Traced> trace_;
   std::uint64_t traced_ = 0;
+  bool trapped_ = false;
 };
 
 }  // namespace stillspin::c28x

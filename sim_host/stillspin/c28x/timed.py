@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from stillspin.c28x.disassembler import disassemble
 from stillspin.core_code import Spent
+from stillspin.flash import memories
 from stillspin.flash.debug_lines import Lines, Source
 from stillspin.flash.program import Program
 
@@ -55,7 +56,8 @@ def functions(program: Program, names: Mapping[int, str], spent: Mapping[int, Sp
     for first, following in zip(starts, [*starts[1:], 1 << 22], strict=True):
         block = next((block for block in program.blocks if block.address <= first < block.end), None)
         if block is None:
-            there = [address for address in spent if first <= address < following and program.word(address) is None]
+            end = min(following, (memories.stretch(first) or range(0)).stop)
+            there = [address for address in spent if first <= address < end and program.word(address) is None]
             if there:
                 took = added(spent[address] for address in there)
                 made.append(Function(names[first], first, max(there) + 1, took, 0, copied=True))
@@ -84,9 +86,15 @@ def by_line(lines: Lines, spent: Mapping[int, Spent]) -> list[tuple[Source, Spen
     return sorted(((source, added(counts)) for source, counts in found.items()), key=lambda row: -row[1][0])
 
 
+def outside(spent: Mapping[int, Spent]) -> Spent:
+    """What was spent on addresses that no code can be at: each traps."""
+    return added(count for address, count in spent.items() if memories.stretch(address) is None)
+
+
 def elsewhere(rows: Iterable[Function], spent: Mapping[int, Spent]) -> Spent:
     """What code took that is in none of the rows: copied without a name, or not the program's at all."""
-    everything, known = added(spent.values()), added(row.spent for row in rows)
+    inside = (count for address, count in spent.items() if memories.stretch(address) is not None)
+    everything, known = added(inside), added(row.spent for row in rows)
     cycles, registers, data, fetches = (of_all - of_rows for of_all, of_rows in zip(everything, known, strict=True))
     return cycles, registers, data, fetches
 

@@ -33,6 +33,7 @@ _STACK = 0x0400
 _STACK_NAMES = ("__stack", "___stack")
 """Of the linker, where the stack begins."""
 _ELSEWHERE = "(code without a name)"
+_OUTSIDE = "(outside of the memories)"
 _USUAL = 0.1
 """Seconds that it is looked at."""
 _WAITS = ("registers", "data", "fetches")
@@ -51,9 +52,13 @@ def _say_interrupts(
 ) -> None:
     names = image.names.functions
     print(f"\n{'interrupt':<28}{'count':>8}{'mean':>10}{'worst':>8}   cycles")
-    for which, cycles in sorted(each.items()):
+    for which in sorted({*each, *within}):
         vector, routine = which
         label = f"{vectors.name(vector)} {names.get(routine, f'0x{routine:06X}')}"
+        cycles = each.get(which)
+        if not cycles:
+            print(f"{label:<28}{'entered, but none has returned':>34}")
+            continue
         print(f"{label:<28}{len(cycles):>8}{sum(cycles) / len(cycles):>10.1f}{max(cycles):>8}")
         for line in timed.histogram(cycles):
             print(line)
@@ -63,6 +68,7 @@ def _say_interrupts(
         of_each += [
             ("(the others)", sum(row.cycles for row in rows[most:])),
             (_ELSEWHERE, timed.elsewhere(rows, inside)[0]),
+            (_OUTSIDE, timed.outside(inside)[0]),
         ]
         for name, count in of_each:
             if count:
@@ -90,9 +96,9 @@ def _say_functions(image: Image, spent: Mapping[int, Spent], most: int) -> None:
         print(f"{row.name:<28}{_shares(row.spent, total)}{share}")
     if len(rows) > most:
         print(f"and {len(rows) - most} more (--functions)")
-    rest = timed.elsewhere(rows, spent)
-    if rest[0]:
-        print(f"{_ELSEWHERE:<28}{_shares(rest, total)}")
+    for what, rest in ((_ELSEWHERE, timed.elsewhere(rows, spent)), (_OUTSIDE, timed.outside(spent))):
+        if rest[0]:
+            print(f"{what:<28}{_shares(rest, total)}")
     ran = sum(row.ran for row in rows)
     print(f"code that ran: {counted(ran, 'word')} of {program.size} that the image has, data among them")
 
@@ -128,8 +134,9 @@ class _Looked:
         seconds = (board.now - self._since) / TICKS_PER_SECOND
         _say_run(self._image.file, seconds, self._before, board.code(), board.statistics()["idle_ticks"] - self._asleep)
         spent, interrupts, stack = board.spent()
-        if interrupts:
-            _say_interrupts(self._image, interrupts, board.within(), self._most)
+        within = board.within()
+        if interrupts or within:
+            _say_interrupts(self._image, interrupts, within, self._most)
         _say_functions(self._image, spent, self._most)
         if self._lines:
             _say_lines(self._image, spent, self._lines)

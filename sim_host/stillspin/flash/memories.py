@@ -37,6 +37,8 @@ MEMORIES = (
     Memory("boot ROM", range(0x3FF000, 0x400000), loaded=False),
 )
 NOWHERE = "nowhere"
+_STRETCHES = (range(0x0800), range(0x8000, 0xC000), range(0x3D7800, 0x3D7C00), layout.FLASH, range(0x3F8000, 0x3FC000))
+"""Where code may be without a gap."""
 
 
 def at(address: int) -> Memory | None:
@@ -54,6 +56,11 @@ def name(address: int) -> str:
     if memory is None:
         return NOWHERE
     return memory.name if address in memory.words else f"{memory.name} high"
+
+
+def stretch(address: int) -> range | None:
+    """The addresses around one without a gap that code may be at; None where there can be none."""
+    return next((words for words in _STRETCHES if address in words), None)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from stillspin.counted import counted
 from stillspin.errors import InputError, did_you_mean
-from stillspin.flash import coff, coff_lines, debug_lines, elf
+from stillspin.flash import coff, coff_lines, debug_lines, elf, memories
 from stillspin.flash.debug_head import Strings
 from stillspin.flash.debug_lines import Lines, Source
 
@@ -30,7 +30,8 @@ class Names:
 
     def function(self, address: int) -> str:
         """The name of the function around an address, or the address."""
-        before = [place for place in self.functions if place <= address]
+        around = memories.stretch(address) or ()
+        before = [place for place in self.functions if place <= address and place in around]
         if not before:
             return f"0x{address:06X}"
         first = max(before)

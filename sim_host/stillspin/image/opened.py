@@ -20,6 +20,7 @@ from stillspin.flash import names
 from stillspin.flash.files import read_program
 from stillspin.flash.names import Names
 from stillspin.flash.program import Program
+from stillspin.image import runaway
 
 SLICE = 1_000_000
 """Ticks between two looks at a board that runs to a place."""
@@ -86,12 +87,15 @@ def _hook_flash_library(board: NativeBoard, there: Names) -> None:
 
 
 def warnings(board: NativeBoard, image: Image) -> list[str]:
-    """What a user of an image has to know of a run: what it used that is not modelled, what its file does not tell."""
+    """What a user of an image has to know of a run: that it ran away, what of the chip and the file there is not."""
     said = [f"{image.file.name}: {damage}" for damage in image.names.damage]
+    ran_away = runaway.said(board, image.names)
+    said += [ran_away] if ran_away else []
     if there := board.statistics()["unmodelled_accesses"]:
         said.append(
             f"the program accessed parts of the chip that are not modelled ({counted(there, 'time')}): the boot "
             "ROM's tables (IQmath), SPI, eCAP (docs/chip.md). They read as 0; results computed from them are wrong"
+            + ("; what it did behind the illegal instruction is among them" if ran_away else "")
         )
     return [f"warning: {words}" for words in said]
 

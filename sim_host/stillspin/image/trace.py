@@ -8,6 +8,7 @@ from itertools import pairwise
 from stillspin.c28x.disassembler import disassemble
 from stillspin.core_board import NativeBoard
 from stillspin.flash.names import Names
+from stillspin.image import runaway
 
 _SPOKEN_OF = frozenset({"PC"})
 """Registers that every instruction changes."""
@@ -22,11 +23,15 @@ def lines(board: NativeBoard, names: Names) -> Iterator[str]:
     place = ""
     for (cycles, before), (following, after) in pairwise(rows):
         address = before["PC"]
+        words = board.words(address, 2)
         here = where(names, address)
         if here != place:
             place = here
             yield f"{place}:"
-        text = disassemble(board.words(address, 2), address).text
+        text = disassemble(words, address).text
+        if runaway.is_illegal(words):
+            yield f"{cycles:>12}  0x{address:06X}  {text:<34}      is illegal and traps: the trace ends"
+            return
         changed = ", ".join(
             f"{name} {value:X}" for name, value in after.items() if name not in _SPOKEN_OF and value != before[name]
         )

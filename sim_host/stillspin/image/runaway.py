@@ -1,0 +1,60 @@
+"""A program that has run away: where it first came to what is no instruction, and what that usually means."""
+
+from __future__ import annotations
+
+from stillspin.c28x.disassembler import disassemble
+from stillspin.core_board import NativeBoard
+from stillspin.flash import layout, memories
+from stillspin.flash.names import Names
+
+_TRAPS = frozenset({"ITRAP0", "ITRAP1"})
+_EMPTY = 0x0000
+_ROM = range(0x3FF000, 0x400000)
+_POINTER = "a return address or a pointer to a function was overwritten or never set (has the stack grown into it?)"
+
+
+def is_illegal(words: list[int]) -> bool:
+    """Whether the first of these words traps."""
+    line = disassemble(words)
+    return line.form is None or line.text in _TRAPS
+
+
+def said(board: NativeBoard, names: Names) -> str:
+    """In words, with the place and the call before it; empty where no illegal instruction was executed.
+
+    A trace that was asked for ends with it, and is not told from one that did not come to its end: where the last
+    instruction of several looks legal by now, nothing is said.
+    """
+    rows = board.traced()
+    if not rows:
+        return ""
+    cycles, before = rows[-1]
+    place, last_call = before["PC"], before["RPC"]
+    words = board.words(place, 2)
+    if len(rows) > 1 and not is_illegal(words):
+        return ""
+    called = f", the last call returns to {names.place(last_call)}" if memories.stretch(last_call) else ""
+    return (
+        f"the program came to an illegal instruction at {_where(place, names)}, in cycle {cycles}{called}. "
+        f"It trapped there (vector 19). Usually: {_usually(place, words[0])}"
+    )
+
+
+def _where(place: int, names: Names) -> str:
+    memory = memories.at(place)
+    if memory is None:
+        return f"0x{place:06X}, where the chip has no memory"
+    named = names.place(place) if names.function(place) != f"0x{place:06X}" else f"0x{place:06X}"
+    return f"{named}, {memories.name(place)}"
+
+
+def _usually(place: int, word: int) -> str:
+    if place in _ROM:
+        return "a function of the boot ROM was called, whose code the virtual chip has not: link it into flash"
+    if memories.stretch(place) is None:
+        return _POINTER
+    if word == layout.ERASED:
+        return f"nothing was loaded there; or {_POINTER}"
+    if word == _EMPTY:
+        return f"code that runs from RAM was not copied there before it was called; or {_POINTER}"
+    return "it is data, or code of a C28x with a floating-point unit, which an F2808 has not (--float_support)"
