@@ -90,6 +90,14 @@ def test_a_program_without_a_boot_entry_gets_a_branch():
         blocks_of(Program((Block(0x3F4000, (0x7700,)),), 0x3F5000), "x")
 
 
+@pytest.mark.parametrize(
+    ("first", "words"), [(0x3D7800, "0x3D7800 to 0x3D7802 3 words"), (0x3FBFFE, "0x3FBFFE to 0x3FC000 1 word")]
+)
+def test_words_for_no_memory_of_the_board_are_said_by_their_place(first, words):
+    with pytest.raises(InputError, match=f"x: of {words} lie in neither flash nor RAM"):
+        blocks_of(Program((Block(0x3F7FF6, (0x6F00,)), Block(first, (1, 2, 3)))), "x")
+
+
 @pytest.mark.parametrize("encode", [coff, intel_hex])
 def test_the_board_runs_a_file_behind_a_port(tmp_path, encode):
     image, port = tmp_path / "echo.out", tmp_path / "port"

@@ -2,12 +2,15 @@
 
 import subprocess
 import sys
+import time
+from pathlib import Path
 
 import pytest
 from c28x_chip import linked_file
 from typer.testing import CliRunner
 
 from stillspin import cli
+from stillspin.hil import boards
 
 READS_ROM = """
         .org 0x3F7FF6
@@ -65,3 +68,17 @@ def test_the_board_says_it_when_it_is_switched_off(image):
     *_, said, left = done.stdout.splitlines()
     assert said.startswith(SAID)
     assert left.startswith("switched off after")
+
+
+def test_a_board_in_the_loop_says_it_too(image, capsys):
+    with boards.Board(None, Path(image())) as board:
+        board.wait("serial")
+        time.sleep(2)  # of which the first milliseconds are enough
+    assert capsys.readouterr().out.startswith("warning: the program accessed parts of the chip that are not modelled")
+
+
+def test_words_for_no_memory_are_said_in_a_scenario_too(image):
+    file = image(READS_RAM + "        .org 0x3D7800\n        .word 1\n")
+    done = CliRunner().invoke(cli.app, ["image", "time", file, "A10"])
+    assert done.exit_code == 2
+    assert "0x3D7800" in done.stderr

@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from stillspin.core import Blocks
+from stillspin.counted import counted
 from stillspin.errors import InputError
-from stillspin.flash import layout
+from stillspin.flash import layout, memories
 from stillspin.flash.files import read_program
-from stillspin.flash.program import Program
+from stillspin.flash.program import Block, Program
 
 _LONG_BRANCH = 0x0040
 """The first word of LB, with the upper six bits of where it goes."""
@@ -23,12 +24,25 @@ def load(file: Path) -> Blocks:
     return blocks_of(read_program(file), str(file))
 
 
+def _check_place(block: Block, name: str) -> None:
+    filled = memories.Filled([memories.Extent(block.address, len(block.words), loaded=True)])
+    taken = sum(filled.of(memory) for memory in memories.MEMORIES if memory.group)
+    if taken < len(block.words):
+        lost = counted(len(block.words) - taken, "word")
+        raise InputError(
+            f"{name}: of 0x{block.address:06X} to 0x{block.end - 1:06X} {lost} lie in neither flash nor RAM of an F2808 "
+            "(the OTP of the virtual one is erased and stays so); `stillspin image show` lists where its sections go"
+        )
+
+
 def blocks_of(program: Program, name: str) -> Blocks:
     """The words of a program. One that has nothing at the flash's entry gets a branch there, to its own entry.
 
     Raises:
-        InputError: nothing says where it begins.
+        InputError: nothing says where it begins, or it has words that the virtual board has no memory for.
     """
+    for block in program.blocks:
+        _check_place(block, name)
     blocks: Blocks = [(block.address, list(block.words)) for block in program.blocks]
     if program.word(layout.BOOT_ENTRY) is None:
         if program.entry is None:

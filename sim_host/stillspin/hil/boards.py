@@ -13,6 +13,7 @@ from typing import Self
 
 from stillspin.drive import Drive
 from stillspin.errors import CampaignError
+from stillspin.image.opened import WARNING
 from stillspin.link.errors import DriveError
 from stillspin.link.serial_port import DEFAULT_BAUD
 
@@ -86,9 +87,12 @@ class Board:
         return f"can:slcan:{self._can}?bitrate={BITRATE}"
 
     def __exit__(self, *_: object) -> None:
-        """Switch it off."""
+        """Switch it off, and say what it has to say of its run."""
         self._process.terminate()
         self._process.wait(_PATIENCE)
+        for line in self._log.read_text(encoding="utf-8", errors="replace").splitlines():
+            if line.startswith(WARNING):
+                print(line)
         self.memory = self._eeprom.read_bytes() if self._eeprom.exists() else b""
         self._directory.cleanup()
 

@@ -25,6 +25,9 @@ from stillspin.image import runaway
 SLICE = 1_000_000
 """Ticks between two looks at a board that runs to a place."""
 
+WARNING = "warning: "
+"""How what a user has to know of a run begins."""
+
 
 @dataclass(frozen=True)
 class Image:
@@ -97,7 +100,7 @@ def warnings(board: NativeBoard, image: Image) -> list[str]:
             "ROM's tables (IQmath), SPI, eCAP (docs/chip.md). They read as 0; results computed from them are wrong"
             + ("; what it did behind the illegal instruction is among them" if ran_away else "")
         )
-    return [f"warning: {words}" for words in said]
+    return [f"{WARNING}{words}" for words in said]
 
 
 def say(board: NativeBoard, image: Image) -> None:
