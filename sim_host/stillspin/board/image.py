@@ -30,7 +30,7 @@ def _check_place(block: Block, name: str) -> None:
     if taken < len(block.words):
         lost = counted(len(block.words) - taken, "word")
         raise InputError(
-            f"{name}: of 0x{block.address:06X} to 0x{block.end - 1:06X} {lost} lie in neither flash nor RAM of an F2808 "
+            f"{name}: of 0x{block.address:06X} to 0x{block.end - 1:06X} {lost} lie in neither flash nor RAM "
             "(the OTP of the virtual one is erased and stays so); `stillspin image show` lists where its sections go"
         )
 
