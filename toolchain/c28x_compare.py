@@ -199,9 +199,7 @@ def compare(files: Sequence[Path], decided: Decisions) -> tuple[int, list[Form]]
             undecided += row.key not in decided
             print(f"{row.text}; {words}. {decided.get(row.key, 'NOT DECIDED')}")
         there = covered(listed)
-        print(
-            f"{file.name}: {len(listed)} rows; {len(there)} of the table's {len(times)} forms stand in it as they are"
-        )
+        print(f"{file.name}: rows: {len(listed)}; forms of the table in it as they are: {len(there)} of {len(times)}")
         for form in there:
             times[form] += 1
     for count in range(len(files), -1, -1):
