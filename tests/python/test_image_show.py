@@ -6,6 +6,7 @@ import flash_files
 import pytest
 from c28x_chip import linked_file, program
 from elf_files import elf
+from test_image_time import symbol, with_symbols
 from typer.testing import CliRunner
 
 from stillspin import cli
@@ -95,6 +96,13 @@ def with_name(data, index, name):
     return data[:8] + table + data[16:at] + struct.pack("<II", 0, 4) + data[at + 8 :] + bytes(4) + name.encode() + b"\0"
 
 
+def test_damaged_names_are_said(tmp_path):
+    path = tmp_path / "some.out"
+    path.write_bytes(with_symbols(flash_files.coff(blocks()), [symbol("\x01", START)], bytearray()))
+    lines = CliRunner().invoke(cli.app, ["image", "show", str(path)]).stdout.splitlines()
+    assert lines[1] == "warning: 1 symbol cannot be read: left out"
+
+
 def test_what_takes_no_memory_is_left_out():
     kinds = {0x01: False, 0x02: True, 0x10: False, 0x20: True, 0x80: True}
     for kind, shown in kinds.items():
@@ -174,13 +182,15 @@ def test_a_whole_program_is_shown(tmp_path):
     at = control.symbols["SAMPLE"]
     listed = CliRunner().invoke(cli.app, [*command, "--code", hex(at), "--lines", "4"]).stdout.splitlines()
     assert listed[0].split()[2:] == ["SETC", "SXM"]
+    by_name = CliRunner().invoke(cli.app, [*command, "--code", "sample", "--lines", "4"]).stdout.splitlines()
+    assert by_name == listed
 
 
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
         (("--code", "0x3F5000"), "the image has nothing at 0x3F5000"),
-        (("--code", "start"), "'start' is no address"),
+        (("--code", "start"), "'start' is neither an address such as 0x3F4000, nor FILE:LINE, nor a name"),
         (("--lines", "0"), "--lines"),
     ],
 )

@@ -82,3 +82,9 @@ def test_words_for_no_memory_are_said_in_a_scenario_too(image):
     done = CliRunner().invoke(cli.app, ["image", "time", file, "A10"])
     assert done.exit_code == 2
     assert "0x3D7800" in done.stderr
+
+
+def test_resets_are_said(image):
+    status, said = ask("time", image(READS_RAM), "--for", "0.02")
+    assert status == 0
+    assert said == ["warning: the watchdog reset the chip (3 times), and the program began anew"]

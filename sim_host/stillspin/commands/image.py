@@ -13,10 +13,10 @@ from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.flash import memories, sections
-from stillspin.flash.files import read_program
 from stillspin.flash.memories import Extent, Filled
 from stillspin.flash.program import Program
 from stillspin.flash.sections import Section
+from stillspin.image import opened
 from stillspin.one_line_errors import OneLineErrors
 from stillspin.options import ImageArgument
 
@@ -84,29 +84,26 @@ def _code(program: Program, address: int, lines: int) -> Iterator[str]:
         address += line.words
 
 
-def _address(text: str) -> int:
-    try:
-        return int(text, 0)
-    except ValueError:
-        raise InputError(f"--code: '{text}' is no address, such as 0x3F4000") from None
-
-
 @app.command()
 def show(
     *,
     file: ImageArgument,
     code: Annotated[
-        str, typer.Option("--code", metavar="ADDRESS", help="List the code from this address on instead.")
+        str,
+        typer.Option("--code", metavar="PLACE", help="List the code from a name, FILE:LINE or an address on instead."),
     ] = "",
     lines: Annotated[int, typer.Option("--lines", min=1, max=65536, help="As many lines of it.")] = 24,
 ) -> None:
     """Say what an image loads where, where it runs, and how full the memories are; exit status 1: some is in none."""
-    program = read_program(file)
+    image = opened.read(file)
+    program = image.program
     if code:
-        for line in _code(program, _address(code), lines):
+        for line in _code(program, image.names.address(code, "--code"), lines):
             print(line)
         return
     entry = "" if program.entry is None else f", entry 0x{program.entry:06X}"
     print(f"{file.name}: {program.kind}, {counted(program.size, 'word')}{entry}")
+    for words in image.names.damage:
+        print(f"{opened.WARNING}{words}")
     if _say(sections.read(file, program)):
         raise typer.Exit(ExitCode.SHORT)

@@ -90,7 +90,7 @@ def _hook_flash_library(board: NativeBoard, there: Names) -> None:
 
 
 def warnings(board: NativeBoard, image: Image) -> list[str]:
-    """What a user of an image has to know of a run: that it ran away, what of the chip and the file there is not."""
+    """What a user of an image has to know of a run: that it ran away or was reset, what it used that is not there."""
     said = [f"{image.file.name}: {damage}" for damage in image.names.damage]
     ran_away = runaway.said(board, image.names)
     said += [ran_away] if ran_away else []
@@ -100,6 +100,8 @@ def warnings(board: NativeBoard, image: Image) -> list[str]:
             "ROM's tables (IQmath), SPI, eCAP (docs/chip.md). They read as 0; results computed from them are wrong"
             + ("; what it did behind the illegal instruction is among them" if ran_away else "")
         )
+    if resets := board.statistics()["resets"]:
+        said.append(f"the watchdog reset the chip ({counted(resets, 'time')}), and the program began anew")
     return [f"{WARNING}{words}" for words in said]
 
 
