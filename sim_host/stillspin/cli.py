@@ -49,10 +49,12 @@ commands.register(app)
 
 @app.command(name="list")
 def list_() -> None:
-    """The scenarios, the profiles and the motors."""
+    """The scenarios, the profiles and the motors, and what campaigns draw from."""
     tables.scenarios(scenario_file.load(identifier) for identifier in scenario_file.ids())
-    print(f"\nprofiles: {', '.join(resources.names('profiles'))}")
-    print(f"motors: {', '.join(resources.names('motors'))}; other people's: stillspin motor list")
+    print()
+    for kind in ("profiles", "motors", "spreads", "faults"):
+        more = "; other people's: stillspin motor list" if kind == "motors" else ""
+        print(f"{kind}: {', '.join(resources.names(kind))}{more}")
 
 
 @app.command()

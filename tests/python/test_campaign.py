@@ -11,11 +11,12 @@ import xml.etree.ElementTree as ET
 from dataclasses import replace
 from types import SimpleNamespace
 
+import jsonschema
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from stillspin import cli, core, wilson
+from stillspin import cli, core, resources, wilson
 from stillspin.campaign import duty, faults, spread, tally, units
 from stillspin.campaign.draw import PLAIN_NOISE, Case, Drawer
 from stillspin.campaign.judge import CAUGHT, End, Verdict, judged
@@ -193,7 +194,7 @@ TIME = np.arange(0.0, 1.0, 0.001)
 ASKED = Run("case", "", 1.0, 3.0, ((0.0, "speed_ref_rpm", 100.0),), (), {}, {}, (Reached((0.5, 1.0), 10.0),))
 
 
-def ended(speed=100.0, off=0.0, fault=None, until=None, reason=""):
+def ended(*, speed=100.0, off=0.0, fault=None, until=None, reason="", unfinished=None):
     """A run whose true speed and true angle less the one in use (degrees) are constants, or (s, value) from then on."""
 
     def over(value):
@@ -201,6 +202,8 @@ def ended(speed=100.0, off=0.0, fault=None, until=None, reason=""):
         return np.where(at <= TIME, after, 100.0 if value is speed else 0.0)
 
     signals = {"time": TIME, "true_speed": over(speed), "true_angle": np.radians(over(off)), "est_angle": 0.0 * TIME}
+    if unfinished is not None:
+        signals["est_angle"][unfinished] = math.nan
     if until is not None:
         signals = {name: data[until > TIME] for name, data in signals.items()}
     return SimpleNamespace(
@@ -220,6 +223,8 @@ def ended(speed=100.0, off=0.0, fault=None, until=None, reason=""):
         (ended(off=(0.2, 180.0), fault=(0.3, "lost")), End.FAILED, 0.1, "; lost"),
         (ended(off=(0.2, 180.0), fault=(0.15, "lost"), until=0.16), End.REFUSED, None, "lost"),
         (ended(off=(0.2, 180.0), fault=(0.15, "lost")), End.REFUSED, None, "lost"),
+        (ended(unfinished=149, fault=(0.15, "lost")), End.REFUSED, None, "lost"),
+        (ended(unfinished=148, fault=(0.15, "lost")), End.FAILED, 0.002, "; lost"),
         (ended(until=0.0, reason="fault during the start: polarity"), End.REFUSED, None, "polarity"),
         (ended(until=0.0, reason="the start procedure took longer than 3 s"), End.FAILED, None, "took longer"),
         (ended(reason="the watchdog reset the chip"), End.FAILED, None, "the watchdog reset the chip"),
@@ -391,6 +396,16 @@ def test_a_fault_that_the_drive_says_is_counted_apart_and_a_motor_that_it_refuse
     assert any("polarity" in reason for reason in found["refusals"])
     assert "all of them: 0 of 1 case failed" in done.stdout
     assert call(*words, "--resume", "--may-refuse", "50").exit_code == 0
+
+
+def test_editors_get_the_schemas_and_the_list_has_the_names(call):
+    """The delivered files keep to what `stillspin schema` says."""
+    listed = call("list").stdout
+    for kind, folder, name in (("spread", "spreads", "manufacturing"), ("faults", "faults", "usual")):
+        made = json.loads(call("schema", kind).stdout)
+        jsonschema.validate(tomllib.loads(resources.find(folder, name).read_text()), made)
+        assert f"{folder}: {name}" in listed
+    assert "did you mean 'spread'?" in call("schema", "spred").stderr
 
 
 @pytest.mark.parametrize(

@@ -64,8 +64,7 @@ def judged(result: NativeResult, run: Run) -> Verdict:
     signals = dict(result.signals)
     if not np.asarray(signals["time"]).size:
         return Verdict(End.FAILED, result.reason or "nothing was recorded")
-    if fault:
-        signals = _before(signals, fault[0])
+    signals = _whole(signals, fault[0] if fault else np.inf)
     error = _error(signals)
     wrong = _first_wrong(signals, run)
     if wrong:
@@ -78,14 +77,20 @@ def judged(result: NativeResult, run: Run) -> Verdict:
     return Verdict(End.GOOD, error=error)
 
 
-def _before(signals: Signals, end: float) -> Signals:
-    keep = np.asarray(signals["time"]) < end
+def _whole(signals: Signals, end: float) -> Signals:
+    """Records before `end`, without a last one that the drive had no time to finish: it has no angle in use."""
+    time, used = as_floats(signals["time"]), as_floats(signals["est_angle"])
+    keep = time < end
+    kept = np.flatnonzero(keep)
+    if kept.size and np.isnan(used[kept[-1]]):
+        keep[kept[-1]] = False
     return {name: np.asarray(data)[keep] for name, data in signals.items()}
 
 
 def _error(signals: Signals) -> float | None:
     off = np.abs(position_error(signals))
-    return round(float(np.max(off)), 3) if off.size else None
+    known = off[np.isfinite(off)]
+    return round(float(np.max(known)), 3) if known.size else None
 
 
 def _first_wrong(signals: Signals, run: Run) -> tuple[float, str] | None:
@@ -100,6 +105,8 @@ def _lost(signals: Signals) -> tuple[float, str] | None:
     first = _first(~(off <= LOST))
     if first is None:
         return None
+    if not np.isfinite(off[first]):
+        return _at(signals, first), "the drive had no angle"
     return _at(signals, first), f"the rotor was {off[first]:.0f}° el. from where the drive took it to be"
 
 

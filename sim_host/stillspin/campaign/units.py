@@ -70,6 +70,10 @@ def nominal(wish: Wish) -> list[Unit]:
     if wish.params and len(wish.motors) > 1:
         raise InputError(f"--params {wish.params}: is of one motor, and --motors are {', '.join(wish.motors)}")
     units = [_unit(wish, motor) for motor in wish.motors]
+    names = [unit.plate.motor for unit in units]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"--motors: two of them are called {name}, as results would be; rename a file")
     return [_in_scheme(wish, unit) for unit in units]
 
 

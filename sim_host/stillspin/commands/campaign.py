@@ -16,25 +16,13 @@ from stillspin.campaign import carry_out, directory, faults, results, spread, ta
 from stillspin.campaign.draw import Case, Drawer, Unit
 from stillspin.campaign.judge import End, Verdict
 from stillspin.campaign.results import Row
+from stillspin.commands.campaign_options import CampaignOptions, with_campaign_options
 from stillspin.counted import counted
 from stillspin.drive.own import firmware
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
-from stillspin.options import (
-    ChangeOption,
-    ClusterOption,
-    CommissionOption,
-    JobsOption,
-    ParamsOption,
-    ProfileOption,
-    SchemeOption,
-    SeedOption,
-    number,
-    processors,
-    whole,
-)
+from stillspin.options import CommissionOption, number, whole
 from stillspin.report import junit, output
-from stillspin.report.junit import JunitOption
 from stillspin.report.progress import Counter, PhaseBar
 from stillspin.revision import revision
 from stillspin.runs.workers import Where
@@ -49,6 +37,7 @@ _SHOWN = 10  # failures in words on the terminal; all are in the table
 _MOST = 100_000  # cases of a motor
 
 
+@with_campaign_options
 def campaign(
     *,
     motors: Annotated[
@@ -58,11 +47,20 @@ def campaign(
         ),
     ] = None,
     spread_name: Annotated[
-        str, typer.Option("--spread", metavar="NAME", help="What differs from unit to unit: a name, or a TOML file.")
+        str,
+        typer.Option(
+            "--spread",
+            metavar="NAME",
+            help="What differs from unit to unit: a name from `stillspin list`, or a TOML file.",
+        ),
     ] = "manufacturing",
     faults_name: Annotated[
         str,
-        typer.Option("--faults", metavar="NAME", help="What breaks: usual, or a TOML file [default: nothing]."),
+        typer.Option(
+            "--faults",
+            metavar="NAME",
+            help="What breaks: a name from `stillspin list`, or a TOML file [default: nothing].",
+        ),
     ] = "",
     count: Annotated[
         int,
@@ -106,16 +104,9 @@ def campaign(
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with FILE: leave out what it has of this campaign.")
     ] = False,
-    profile_name: ProfileOption = "bench",
-    seed: SeedOption = 1,
-    change: ChangeOption = None,
-    params: ParamsOption = None,
-    scheme: SchemeOption = None,
+    common: CampaignOptions,
     commission_first: CommissionOption = True,
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the results.")] = Path("results-campaign"),
-    jobs: JobsOption = None,
-    cluster: ClusterOption = "",
-    junit_file: JunitOption = None,
 ) -> None:
     """Run drawn units of motors through one duty, judge the true shaft, and say what share of them fails.
 
@@ -124,28 +115,37 @@ def campaign(
     """
     named_motors = _motors(motors or [])
     schema = core.plant_schema(core.load())
-    drawer = Drawer(
-        spread.load(spread_name, schema), faults.load(faults_name, schema) if faults_name else faults.Faults(), seed
+    broken = faults.load(faults_name, schema) if faults_name else faults.Faults()
+    drawer = Drawer(spread.load(spread_name, schema), broken, common.seed)
+    wish = units.Wish(
+        named_motors,
+        common.profile_name,
+        common.seed,
+        firmware(),
+        common.changes,
+        common.params,
+        common.scheme,
+        commission_first,
     )
-    wish = units.Wish(named_motors, profile_name, seed, firmware(), change or [], params, scheme, commission_first)
     plain = units.nominal(wish)
     carry_out.check(plain, drawer)
     about = _about(wish, plain, drawer)
     kept = results.Results(file, about, resume)
     numbers = sorted(set(case)) if case else range(1, count + 1)
-    with junit.Report(junit_file, NAME) as verdicts, output.fresh_directory(out) as place:
+    wanted = [(motor, each) for motor in named_motors for each in numbers]
+    with junit.Report(common.junit_file, NAME) as verdicts, output.fresh_directory(out) as place:
         told = units.told(wish, plain, _bar)
         named = {unit.motor: unit for unit in told.units}
-        wanted = [(unit, each) for unit in told.units for each in numbers]
-        where = Where(jobs or processors(), cluster)
-        todo = [(unit, drawer.case(each)) for unit, each in wanted if (unit.motor, each) not in kept.rows]
-        _run(todo, told, drawer, where, kept)
-        rows = [kept.rows[unit.motor, each] for unit, each in wanted]
-        verdicts.add(map(_verdict, rows))
+        todo = [(named[motor], drawer.case(each)) for motor, each in wanted if (motor, each) not in kept.rows]
+        try:
+            _run(todo, told, drawer, common.where, kept)
+        finally:
+            rows = [kept.rows[key] for key in wanted if key in kept.rows]
+            verdicts.add(map(_verdict, rows))
         failed = [row for row in rows if row.verdict.failed]
-        small = _shrunk(failed[:smallest], named, drawer, where)
+        small = _shrunk(failed[:smallest], named, drawer, common.where)
         shrunk = directory.write(place, out, directory.Outcome(about, rows, small, named, told.found, drawer))
-    _say(rows, failed, drawer, list(named), bool(case))
+    _say(rows, failed, drawer, named_motors, bool(case))
     for words in [*shrunk, *told.doubted]:
         print(f"stillspin: {words}", file=sys.stderr)
     print(f"see {out / output.MARK} and {out / directory.CASES}")

@@ -13,6 +13,7 @@ from rich.console import Console
 
 from stillspin import core
 from stillspin.board import image as images
+from stillspin.commands.campaign_options import CampaignOptions, with_campaign_options
 from stillspin.commands.connection import DriveOption, wanted
 from stillspin.counted import counted
 from stillspin.errors import InputError
@@ -24,18 +25,7 @@ from stillspin.hil.runs import LoopRun
 from stillspin.hil.wish import Wish
 from stillspin.link import address
 from stillspin.link.errors import NoAnswerError
-from stillspin.options import (
-    ChangeOption,
-    ClusterOption,
-    JobsOption,
-    ParamsOption,
-    ProfileOption,
-    SchemeOption,
-    SeedOption,
-    processors,
-)
 from stillspin.report import junit, tables
-from stillspin.report.junit import JunitOption
 from stillspin.report.progress import Counter, PhaseBar
 from stillspin.revision import revision
 from stillspin.runs.workers import Where
@@ -43,6 +33,7 @@ from stillspin.runs.workers import Where
 _VIRTUAL = "virtual"
 
 
+@with_campaign_options
 def hil(
     *,
     context: typer.Context,
@@ -77,15 +68,8 @@ def hil(
     resume: Annotated[
         bool, typer.Option("--resume", help="Leave out runs that FILE has as identical, made from these sources.")
     ] = False,
-    profile_name: ProfileOption = "bench",
-    seed: SeedOption = 1,
-    change: ChangeOption = None,
-    params: ParamsOption = None,
-    scheme: SchemeOption = None,
+    common: CampaignOptions,
     only: Annotated[list[str] | None, typer.Option("--run", help="Only this run of the scenario. Repeatable.")] = None,
-    jobs: JobsOption = None,
-    cluster: ClusterOption = "",
-    junit_file: JunitOption = None,
 ) -> None:
     """Step a board through scenarios: this computer runs the plant, and compares every answer bit for bit.
 
@@ -98,12 +82,21 @@ def hil(
     board = _executing(context, image, port or can or where) if image else _address(port, can, where)
     is_virtual = board.partition(":")[0] == _VIRTUAL
     if not is_virtual:
-        if (jobs or 1) != 1 or cluster:
+        if (common.jobs or 1) != 1 or common.cluster:
             raise InputError("--jobs, --cluster: a board does one run at a time, and is at this computer")
         core.require()  # before anything is asked of the board
         runs.ids(scenarios)
         core.follow_edition(_edition(board, image))
-    wish = Wish(tuple(scenarios), check, tuple(only or ()), profile_name, seed, tuple(change or ()), params, scheme)
+    wish = Wish(
+        tuple(scenarios),
+        check,
+        tuple(only or ()),
+        common.profile_name,
+        common.seed,
+        tuple(common.changes),
+        common.params,
+        common.scheme,
+    )
     everything = wish.runs(core.load())
     if not everything:
         raise InputError(f"--run {' '.join(only or [])}: there is no such run in {' '.join(scenarios)}")
@@ -112,13 +105,9 @@ def hil(
     left = {number for number, run in enumerate(everything) if not (resume and _is_done(results, run, kind, of))}
     chosen = [everything[number] for number in runs.broad(everything) if number in left]
     skipped = [begun(run, kind, of) for number, run in enumerate(everything) if number not in left]
-    rows = (
-        _on_virtual(chosen, kind, of, Where(jobs or processors(), cluster))
-        if is_virtual
-        else _on_one(chosen, board, of)
-    )
+    rows = _on_virtual(chosen, kind, of, common.where) if is_virtual else _on_one(chosen, board, of)
     done = []
-    with junit.Report(junit_file, "hil") as verdicts:
+    with junit.Report(common.junit_file, "hil") as verdicts:
         verdicts.add(map(junit.left_out, skipped))
         for new in rows:
             verdicts.add([junit.of_loop(new)])

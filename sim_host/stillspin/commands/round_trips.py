@@ -14,26 +14,14 @@ import typer
 
 from stillspin import resources, wilson
 from stillspin.cases.scenario import Figure, Goal, Reached, Run, Scenario
+from stillspin.commands.campaign_options import CampaignOptions, with_campaign_options
 from stillspin.counted import counted
 from stillspin.exit_codes import ExitCode
-from stillspin.options import (
-    ChangeOption,
-    ClusterOption,
-    CommissionOption,
-    JobsOption,
-    ParamsOption,
-    ProfileOption,
-    SchemeOption,
-    SeedOption,
-    processors,
-    whole,
-)
+from stillspin.options import CommissionOption, whole
 from stillspin.report import junit
-from stillspin.report.junit import JunitOption
 from stillspin.report.page import number
 from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.reproduction import Options, carry_out
-from stillspin.runs.workers import Where
 
 NAME = "round-trips"
 TRIPS = "trips.json"
@@ -98,6 +86,7 @@ def _cases(results: Sequence[ScenarioResult]) -> list[junit.TestCase]:
     return [case for result in results for case in junit.of_scenario(result, NAME)]
 
 
+@with_campaign_options
 def round_trips(
     *,
     runs: Annotated[
@@ -109,34 +98,27 @@ def round_trips(
             "--may-lose", metavar="N", parser=whole("--may-lose", 0, 10000), help="So many lost are no failure."
         ),
     ] = 0,
-    profile_name: ProfileOption = "bench",
-    seed: SeedOption = 1,
-    change: ChangeOption = None,
-    params: ParamsOption = None,
-    scheme: SchemeOption = None,
+    common: CampaignOptions,
     commission_first: CommissionOption = True,
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the results.")] = Path("results-trips"),
-    jobs: JobsOption = None,
-    cluster: ClusterOption = "",
-    junit_file: JunitOption = None,
 ) -> None:
     """From standstill to 3000 rpm and back without load, forward and backward in turn, from drawn initial angles.
 
     The seed draws the angles, too. Exit status 1 when more trips are lost than --may-lose says.
     """
-    with junit.Report(junit_file, NAME) as verdicts:
+    with junit.Report(common.junit_file, NAME) as verdicts:
         options = Options(
-            profile_name,
-            seed,
+            common.profile_name,
+            common.seed,
             out,
-            change or [],
-            where=Where(jobs or processors(), cluster),
+            common.changes,
+            where=common.where,
             draw=False,
-            params=params,
-            scheme=scheme,
+            params=common.params,
+            scheme=common.scheme,
             commission=commission_first,
         )
-        done = carry_out([trips(runs, seed)], options)
+        done = carry_out([trips(runs, common.seed)], options)
         verdicts.add(_cases(done.results))
         verdicts.add(junit.of_refused(words) for words in done.refused)
         found = outcome(done.results[0])
