@@ -116,7 +116,7 @@ def test_the_delivered_spread_moves_what_its_departures_say():
     moved = {
         f"{section}.{key}"
         for row in source.spread.departures
-        for pulls in (row.factor, row.add)
+        for pulls in (row.factor, row.add, row.add_of_range)
         for section, keys in pulls.items()
         for key in keys
     }
@@ -134,7 +134,10 @@ def test_the_delivered_spread_moves_what_its_departures_say():
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ('[[departures]]\nname = "x"\nnormal = 1.0\n', "(x): moves nothing; give 'factor', 'add' or 'load'"),
+        (
+            '[[departures]]\nname = "x"\nnormal = 1.0\n',
+            "(x): moves nothing; give one of factor, add, add_of_range, load",
+        ),
         ('[[departures]]\nname = "x"\nload = 1.0\n', "(x): give one of 'normal', with 'limit', and 'uniform'"),
         ('[[departures]]\nname = "x"\nload = 1\nuniform = [1.0, 2.0]\n', "from ≤ 0 ≤ to; 0 is nominal"),
         ('[[departures]]\nname = "x"\nload = 1\nnormal = -1.0\n', "normal = -1: must be above 0"),
@@ -437,7 +440,9 @@ def test_a_departure_that_leads_out_of_the_plant_is_refused_before_anything_runs
 def test_what_a_case_is_written_as_is_what_was_run(tmp_path):
     """The scenario of a case, read back from its file, is the scenario that the campaign ran."""
     source = Drawer(spread.load("manufacturing", schema()), faults.load("usual", schema()), 4)
-    (unit,) = units.nominal(units.Wish(["B"], "bench", 1))
+    (unit,) = units.nominal(units.Wish(["B"], 1, "bench"))
+    offset = unit.scenario(Case(1, {"sensor_offset_a": 0.1}), source).runs[0].plant["sensor"]["offset_a"]
+    assert offset == pytest.approx(0.030 + 0.001 * 40.0)  # of bench, and a thousandth of what B's sensors measure
     case = next(source.case(n) for n in range(1, 50) if source.case(n).fault)
     path = tmp_path / "B-case-1.toml"
     path.write_text(scenario_text(path, unit, case, source, "lost"))

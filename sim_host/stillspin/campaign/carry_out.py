@@ -60,7 +60,7 @@ def check(units: Sequence[Unit], drawer: Drawer) -> None:
         InputError: it does, at an end of what may be drawn.
     """
     native = core.load()
-    for unit in units:
+    for unit in (each for each in units if not each.refusal):
         for row in drawer.spread.departures:
             for end in (row.low, row.high):
                 case = Case(0, {row.name: end})

@@ -108,6 +108,7 @@ class Unit:
         duty: what is asked of it.
         plate: what its files say; settings: with what the drive was told beyond that.
         schema: of the plant.
+        refusal: why the drive runs none of its cases, in words; empty where it does.
     """
 
     motor: str
@@ -116,6 +117,7 @@ class Unit:
     plate: Profile
     settings: Settings
     schema: core.Schema = field(repr=False)
+    refusal: str = ""
 
     @property
     def told(self) -> dict[str, float]:
@@ -166,11 +168,13 @@ class Unit:
 
     def _added(self, departures: list[tuple[Departure, float]]) -> Plant:
         plant: Plant = {}
+        span = float(self._nominal("adc", "current_range"))
         for row, number in departures:
-            for section, keys in row.add.items():
-                for key, per in keys.items():
-                    before = plant.get(section, {}).get(key, self._nominal(section, key))
-                    plant.setdefault(section, {})[key] = float(before) + per * number
+            for pulls, unit in ((row.add, 1.0), (row.add_of_range, span)):
+                for section, keys in pulls.items():
+                    for key, per in keys.items():
+                        before = plant.get(section, {}).get(key, self._nominal(section, key))
+                        plant.setdefault(section, {})[key] = float(before) + per * number * unit
         return plant
 
     def _nominal(self, section: str, key: str) -> Value:

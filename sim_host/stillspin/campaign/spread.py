@@ -21,6 +21,7 @@ from stillspin.json_schema import DIALECT, Json
 Pulls = Mapping[str, Mapping[str, float]]
 """By section and entry of the plant: how much of it goes with one unit of a departure."""
 
+_MOVES = ("factor", "add", "add_of_range", "load")
 _DIGITS = 6  # of a drawn number
 
 
@@ -32,6 +33,7 @@ class Departure:
         name: unique in its file; title: in words; unit: of the number that is drawn.
         deviation: standard deviation of a normal distribution, cut off at low and high; None for a uniform one.
         factor: an entry is multiplied by 1 + so much times the number; add: it gets so much times the number more.
+        add_of_range: the same as add, in shares of what the current sensors measure at most.
         load: so much of the rated torque more.
     """
 
@@ -43,6 +45,7 @@ class Departure:
     deviation: float | None = None
     factor: Pulls = field(default_factory=dict)
     add: Pulls = field(default_factory=dict)
+    add_of_range: Pulls = field(default_factory=dict)
     load: float = 0.0
 
     def draw(self, seed: int, number: int) -> float:
@@ -59,7 +62,10 @@ class Departure:
     def moves(self) -> str:
         """What goes with it, in the words of `--set`."""
         entries = [
-            f"{section}.{key}" for pulls in (self.factor, self.add) for section, keys in pulls.items() for key in keys
+            f"{section}.{key}"
+            for pulls in (self.factor, self.add, self.add_of_range)
+            for section, keys in pulls.items()
+            for key in keys
         ]
         return ", ".join([*entries, *(["the load"] if self.load else [])])
 
@@ -93,8 +99,8 @@ def load(name_or_path: str, entries: core.Schema) -> Spread:
 
 def _departure(row: Json, where: str) -> Departure:
     deviation, low, high = _law(row, f"{where} ({row['name']})")
-    if not any(row.get(key) for key in ("factor", "add", "load")):
-        raise InputError(f"{where} ({row['name']}): moves nothing; give 'factor', 'add' or 'load'")
+    if not any(row.get(key) for key in _MOVES):
+        raise InputError(f"{where} ({row['name']}): moves nothing; give one of {', '.join(_MOVES)}")
     for section, keys in row.get("factor", {}).items():
         for key, per in keys.items():
             least = min(1.0 + per * low, 1.0 + per * high)
@@ -110,6 +116,7 @@ def _departure(row: Json, where: str) -> Departure:
         deviation=deviation,
         factor=row.get("factor", {}),
         add=row.get("add", {}),
+        add_of_range=row.get("add_of_range", {}),
         load=float(row.get("load", 0.0)),
     )
 
@@ -143,6 +150,7 @@ def schema(entries: core.Schema) -> Json:
         "uniform": pair(NUMBER) | {"description": "Ends of a uniform distribution; 0, nominal, is between them."},
         "factor": pulls | {"description": "Multiply by 1 + this times the number."},
         "add": pulls | {"description": "Add this times the number."},
+        "add_of_range": pulls | {"description": "Add this times the number, as a share of adc.current_range."},
         "load": NUMBER | {"description": "Add this times the number, a share of the rated torque, to the load."},
     }
     keys = {"description": TEXT, "departures": rows(table(departure, "name"))}

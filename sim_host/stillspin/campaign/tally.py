@@ -40,6 +40,8 @@ class Tally:
     def words(self, refusal: str = "refused") -> str:
         """For people. refusal: what it is called when the drive ends a case in words before anything is wrong."""
         failed = f"{counted(self.failed, 'case', self.run)} failed ({wilson.words(self.failed, self.run)})"
+        if not self.run:
+            failed = "no case ran"
         if self.failed:
             failed += f", {self.caught} of them off within {1e3 * CAUGHT:.0f} ms and in words"
         return f"{failed}; {self.refused} of {self.cases} {refusal} ({wilson.words(self.refused, self.cases)})"

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from stillspin import core
+from stillspin import core, resources
 from stillspin.campaign import duty
 from stillspin.campaign.draw import Unit
 from stillspin.cases import profile, variant
@@ -17,6 +17,8 @@ from stillspin.revision import revision
 from stillspin.runs import commission
 from stillspin.runs.execute import Settings
 
+_PROFILES, _USUAL = "motors/profiles", "bench"
+"""Where motors have profiles of their own, and what the others get."""
 Show = Callable[[float, str], bool]
 """Is told the share done and the phase."""
 Progress = Callable[[], AbstractContextManager[Show]]
@@ -28,15 +30,17 @@ class Wish:
     """What was asked for.
 
     Attributes:
-        motors: names or paths; profile: the same; changes: as `--set` takes them; seed: of the commissioning's noise.
+        motors: names or paths.
+        profile: the same, None for that of the motor's name, or else the usual one.
+        changes: as `--set` takes them; seed: of the commissioning's noise.
         firmware: version, board file, build and table of the drive's, for the records.
         params: a parameter file for the drive; scheme: over what it is told and finds out; None for none.
         commission: whether the nominal unit is commissioned, where the profile is for it and there is no `params`.
     """
 
     motors: Sequence[str]
-    profile: str
     seed: int
+    profile: str | None = None
     firmware: str = ""
     changes: Sequence[str] = ()
     params: Path | None = None
@@ -50,22 +54,20 @@ class Told:
 
     Attributes:
         units: in their order, also those that are refused.
-        refused: why a motor cannot be run at all, by its name.
         found: what the commissioning found, by motor.
         doubted: values that the drive did not believe, in words.
     """
 
     units: list[Unit]
     found: dict[str, commission.Result] = field(default_factory=dict)
-    refused: dict[str, str] = field(default_factory=dict)
     doubted: list[str] = field(default_factory=list)
 
 
 def nominal(wish: Wish) -> list[Unit]:
-    """The motors, their drives told what files say.
+    """The motors, their drives told what files say. One that its drive refuses to be set up for is one of them.
 
     Raises:
-        InputError: something asked for does not exist or does not fit together.
+        InputError: something asked for does not exist or does not fit together, or all motors are refused.
     """
     if wish.params and len(wish.motors) > 1:
         raise InputError(f"--params {wish.params}: is of one motor, and --motors are {', '.join(wish.motors)}")
@@ -74,7 +76,9 @@ def nominal(wish: Wish) -> list[Unit]:
     for name in names:
         if names.count(name) > 1:
             raise InputError(f"--motors: two of them are called {name}, as results would be; rename a file")
-    return [_in_scheme(wish, unit) for unit in units]
+    if all(unit.refusal for unit in units):
+        raise InputError(units[0].refusal)
+    return units
 
 
 def told(wish: Wish, units: Sequence[Unit], progress: Progress) -> Told:
@@ -85,7 +89,7 @@ def told(wish: Wish, units: Sequence[Unit], progress: Progress) -> Told:
     found = Told(list(units))
     for number, unit in enumerate(units):
         profile.say_not_stated(unit.plate)
-        if wish.commission and not wish.params and unit.plate.commission:
+        if wish.commission and not wish.params and unit.plate.commission and not unit.refusal:
             found.units[number] = _in_scheme(wish, _commissioned(unit, found, progress))
     return found
 
@@ -95,12 +99,27 @@ def _known() -> dict[str, Entry]:
 
 
 def _unit(wish: Wish, motor: str) -> Unit:
-    schema, known = core.plant_schema(core.load()), _known()
-    plate = profile.load(wish.profile, schema, known, motor)
+    native, known = core.load(), _known()
+    schema = core.plant_schema(native)
+    chosen = wish.profile or (motor if motor in resources.names(_PROFILES) else _USUAL)
+    plate = profile.load(chosen, schema, known, motor, checked=False)
     changes = profile.changes(wish.changes, schema, known)
     settings = Settings(plate, changes, wish.seed, revision(), firmware=wish.firmware)
-    unit = Unit(motor, wish.profile, duty.of(plate, schema, known), plate, settings, schema)
-    return _with(unit, commission.load(wish.params, known)) if wish.params else unit
+    unit = Unit(motor, chosen, duty.of(plate, schema, known), plate, settings, schema)
+    unit = _with(unit, commission.load(wish.params, known)) if wish.params else unit
+    return replace(_in_scheme(wish, unit), refusal=_refusal(unit, native, known))
+
+
+def _refusal(unit: Unit, native: core.NativeCore, known: Mapping[str, Entry]) -> str:
+    """Why the drive cannot be set up for a motor: a value out of its range, or values that do not fit together."""
+    try:
+        profile.load(unit.profile, unit.schema, known, unit.motor)
+        native.check_parameters({**unit.settings.profile.parameters, **unit.settings.changes.parameters})
+    except InputError as error:
+        return str(error)
+    except ValueError as error:
+        return f"motor {unit.motor}: {error}"
+    return ""
 
 
 def _in_scheme(wish: Wish, unit: Unit) -> Unit:
@@ -123,8 +142,7 @@ def _commissioned(unit: Unit, found: Told, progress: Progress) -> Unit:
         with progress() as show:
             result = commission.run(core.load(), unit.plate, settings.changes, settings.seed, show)
     except CampaignError as error:
-        found.refused[unit.motor] = str(error)
-        return unit
+        return replace(unit, refusal=str(error))
     found.found[unit.motor] = result
     found.doubted += [f"motor {unit.motor}: {value.name} keeps its value: {value.words}" for value in result.refused]
     return _with(unit, {**unit.plate.parameters, **result.told})

@@ -40,6 +40,7 @@ _MOST = 100_000  # cases of a motor
 @with_campaign_options
 def campaign(
     *,
+    context: typer.Context,
     motors: Annotated[
         list[str] | None,
         typer.Option(
@@ -110,8 +111,9 @@ def campaign(
 ) -> None:
     """Run drawn units of motors through one duty, judge the true shaft, and say what share of them fails.
 
-    Each case is drawn by the seed and its number alone. The drive is commissioned once on the nominal unit. Exit status
-    1 when more cases fail than --may-fail says, or more are refused than --may-refuse says.
+    Each case is drawn by the seed and its number alone. The drive is commissioned once on the nominal unit. A motor of
+    the catalogue has the profile of its name, where --profile names none. Exit status 1 when more cases fail than
+    --may-fail says, or more are refused than --may-refuse says.
     """
     named_motors = _motors(motors or [])
     schema = core.plant_schema(core.load())
@@ -119,8 +121,8 @@ def campaign(
     drawer = Drawer(spread.load(spread_name, schema), broken, common.seed)
     wish = units.Wish(
         named_motors,
-        common.profile_name,
         common.seed,
+        None if _is_default(context, "profile_name") else common.profile_name,
         firmware(),
         common.changes,
         common.params,
@@ -138,7 +140,7 @@ def campaign(
         named = {unit.motor: unit for unit in told.units}
         todo = [(named[motor], drawer.case(each)) for motor, each in wanted if (motor, each) not in kept.rows]
         try:
-            _run(todo, told, drawer, common.where, kept)
+            _run(todo, drawer, common.where, kept)
         finally:
             rows = [kept.rows[key] for key in wanted if key in kept.rows]
             verdicts.add(map(_verdict, rows))
@@ -151,6 +153,12 @@ def campaign(
     print(f"see {out / output.MARK} and {out / directory.CASES}")
     if len(failed) > may_fail or told.doubted or tally.tally(tally.plain(rows)).refused_share > may_refuse:
         raise typer.Exit(ExitCode.SHORT)
+
+
+def _is_default(context: typer.Context, name: str) -> bool:
+    """Whether nobody has given the option."""
+    source = context.get_parameter_source(name)
+    return source is not None and source.name == "DEFAULT"
 
 
 def _motors(words: Sequence[str]) -> list[str]:
@@ -166,7 +174,7 @@ def _about(wish: units.Wish, plain: Sequence[Unit], drawer: Drawer) -> dict[str,
     return {
         "revision": revision(),
         "firmware": wish.firmware,
-        "profile": wish.profile,
+        "profiles": {unit.motor: unit.profile for unit in plain},
         "spread": drawer.spread.name,
         "faults": drawer.faults.name,
         "seed": wish.seed,
@@ -182,10 +190,8 @@ def _bar() -> Iterator[units.Show]:
         yield bar.show
 
 
-def _run(
-    todo: Sequence[tuple[Unit, Case]], told: units.Told, drawer: Drawer, where: Where, kept: results.Results
-) -> None:
-    """All cases that are left; a motor whose commissioning broke off is refused in each of them."""
+def _run(todo: Sequence[tuple[Unit, Case]], drawer: Drawer, where: Where, kept: results.Results) -> None:
+    """All cases that are left; a motor that the drive refuses altogether is refused in each of them."""
     with Counter(Console(stderr=True), len(todo)) as counter:
 
         def done(row: Row) -> None:
@@ -193,9 +199,9 @@ def _run(
             counter.one_more(row)
 
         for unit, case in todo:
-            if unit.motor in told.refused:
-                done(Row(unit.motor, case, Verdict(End.REFUSED, told.refused[unit.motor])))
-        carry_out.run([each for each in todo if each[0].motor not in told.refused], drawer, where, done)
+            if unit.refusal:
+                done(Row(unit.motor, case, Verdict(End.REFUSED, unit.refusal)))
+        carry_out.run([each for each in todo if not each[0].refusal], drawer, where, done)
 
 
 def _shrunk(failed: Sequence[Row], named: Mapping[str, Unit], drawer: Drawer, where: Where) -> list[carry_out.Small]:
