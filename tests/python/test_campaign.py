@@ -288,6 +288,21 @@ def test_shares_are_of_what_they_are_said_to_be_of():
     assert second.startswith(
         "A, with a fault: 0 of 1 case failed (0.0 to 79.3 % at 95 %); 1 of 2 ended by the drive in"
     )
+    assert tally.lines(rows[1:2], ["A"]) == ["A: no case ran; 1 of 1 refused (20.7 to 100.0 % at 95 %)"]
+
+
+def test_a_motor_that_the_drive_cannot_be_set_up_for_is_refused_beside_others_and_bad_input_alone(tmp_path):
+    nameplate = resources.find("motors", "A").read_text()
+    light = written(tmp_path, nameplate.replace("inertia = 0.00455", "inertia = 2e-6"), "light.toml")
+    first, second = units.nominal(units.Wish(["A", light], 1))
+    assert not first.refusal
+    assert "inertia, which follows from its file: 2e-06 kgm2 is out of range" in second.refusal
+    with pytest.raises(InputError, match="2e-06 kgm2 is out of range"):
+        units.nominal(units.Wish([light], 1))
+    with pytest.raises(InputError, match="two of them are called A"):
+        units.nominal(units.Wish(["A", written(tmp_path, nameplate, "A.toml")], 1))
+    (own,) = units.nominal(units.Wish(["compressor_12a"], 1))
+    assert (own.profile, first.profile) == ("compressor_12a", "bench")
 
 
 def test_a_file_goes_on_behind_its_last_whole_line_and_only_for_its_own_campaign(tmp_path):
