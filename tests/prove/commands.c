@@ -12,6 +12,7 @@
 #include "firmware/console/suggest.h"
 #include "firmware/link/link.h"
 #include "firmware/scope/commands.h"
+#include "firmware/start/flying/commands.h"
 #include "firmware/store/commands.h"
 #include "hal/hal_sci.h"
 #include "tests/prove/any_drive.h"

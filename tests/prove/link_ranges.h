@@ -53,6 +53,9 @@ bool text_equals(const char* string, const uint16_t* text, uint16_t count);
     ensures \result == 0 || \result == 1; */
 bool text_occurs(const char* string, const uint16_t* text, uint16_t count);
 
+/*@ requires text < PACKED_TEXTS; assigns \result \from text; */
+packed_reader_t packed_reader(packed_text_t text);
+
 /*@ requires \valid(r); assigns *r, \result \from *r; */
 uint16_t packed_next(packed_reader_t* r);
 
@@ -80,6 +83,10 @@ void packed_copy(packed_text_t text, char* string, uint16_t room);
 /*@ requires text < PACKED_TEXTS && (count == 0 || \valid_read(wanted + (0 .. count - 1)));
     assigns \result \from text, wanted[0 .. 79], count; ensures \result == 0 || \result == 1; */
 bool packed_equals(packed_text_t text, const uint16_t* wanted, uint16_t count);
+
+/*@ requires count == 0 || \valid_read(wanted + (0 .. count - 1));
+    assigns \result \from first, texts, wanted[0 .. 79], count; ensures \result <= texts; */
+uint16_t packed_find(packed_text_t first, uint16_t texts, const uint16_t* wanted, uint16_t count);
 
 /*@ requires \valid(w) && \valid_read(text);
     assigns w->octets[0 .. w->room - 1], w->count, w->full \from w->count, w->room, text[0];

@@ -173,6 +173,8 @@ static void divided(unsigned n) {
 static void of_squares(unsigned n) {
   (void)q_sqrt64((n == 0u) ? 0u : (uint64_t)magnitude(n) << 32 | any_u32);
   (void)q_sqrt64(magnitude(n));
+  int64_t sum = any_i64;
+  q_gather(&sum, q_product(any_i32, any_i32));
 }
 
 // Interval by interval of the sine's table, in every quadrant.

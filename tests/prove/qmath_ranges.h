@@ -74,6 +74,9 @@ int32_t q_div(int32_t num, int32_t den, unsigned shift);
     ensures divisor >= 524288 ==> \result.exponent >= 50; */
 q_inverse_t q_invert(int32_t divisor);
 
+/*@ requires \valid(sum) && -4611686018427387904 <= x <= 4611686018427387904; assigns *sum \from *sum, x; */
+void q_gather(int64_t* sum, int64_t x);
+
 /*@ assigns \result \from x; ensures x <= 4611686014132420609 ==> \result <= 2147483647; */
 uint32_t q_sqrt64(uint64_t x);
 

@@ -16,17 +16,20 @@
 #include "tests/prove/ends.h"
 #include "tests/prove/qmath_ranges.h"
 
-/*@ requires \valid(s) && FROM_TO(s->passes, 1, 6); assigns *s, \result \from *s, angle_bam;
-    ensures WITHIN(\result, CURRENT_MAX_Q20) && FROM_TO(s->result, 0, 3) && FROM_TO(s->passes, 1, 6); */
+/*@ requires \valid(s) && FROM_TO(s->passes, 1, 6) && FROM_TO(s->tick, 0, POLARITY_LENGTH);
+    assigns *s, \result \from *s, angle_bam;
+    ensures WITHIN(\result, CURRENT_MAX_Q20) && FROM_TO(s->result, 0, 3) && FROM_TO(s->passes, 1, 6);
+    ensures FROM_TO(s->tick, 0, POLARITY_LENGTH); */
 int32_t polarity_step(polarity_t* s, uint32_t angle_bam);
 
 /*@ requires \valid(s) && \valid_read(r) && \valid_read(m) && FROM_TO(s->passes, 0, 8);
-    assigns *s, \result \from *s, *r, *m; ensures WITHIN(\result, CURRENT_MAX_Q20) && FROM_TO(s->result, 0, 3);
-    ensures FROM_TO(s->passes, 0, 8); */
+    requires FROM_TO(s->tick, 0, SATURATION_LENGTH); assigns *s, \result \from *s, *r, *m;
+    ensures WITHIN(\result, CURRENT_MAX_Q20) && FROM_TO(s->result, 0, 3);
+    ensures FROM_TO(s->passes, 0, 8) && FROM_TO(s->tick, 0, SATURATION_LENGTH); */
 int32_t saturation_step(saturation_t* s, const regression_t* r, const machine_model_t* m);
 
 /*@ requires \valid(s) && \valid_read(m) && \valid_read(slopes); assigns *s \from *m, *slopes, current_q20;
-    ensures FROM_TO(s->result, 0, 3) && FROM_TO(s->passes, 0, 8); */
+    ensures FROM_TO(s->result, 0, 3) && FROM_TO(s->passes, 0, 8) && s->tick == 0; */
 void saturation_begin(saturation_t* s, const machine_model_t* m, const saturation_slopes_t* slopes,
                       int32_t current_q20);
 

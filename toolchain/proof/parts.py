@@ -30,14 +30,16 @@ class Part:
 
 # Read with any argument by itself; what calls it is read with its contract (qmath_ranges.h and the others).
 OF_QMATH = "q_clz32,q_reciprocal_q31,q_div,q_invert,q_sqrt64,q_sqrt32,q_hypot,q_atan2,q_sincos,q_limit"
-OF_QMATH += ",q_follow,q_follow_near,q_follow_halves,q_follow_remainder,q_mix,q_mix_sat,q_square,q_square_sat"
+OF_QMATH += ",q_follow,q_follow_near,q_follow_halves,q_follow_remainder,q_gather,q_mix,q_mix_sat,q_square,q_square_sat"
 OF_LAYOUTS = "svpwm_alternating_fits,svpwm_alternating,svpwm_extended,svpwm_cheapest_pair,svpwm_centred,svpwm_long_zero"
 OF_DROPS = "dead_time_drop_q16"
 OF_BLOCKS = "crc16,cobs_encode,cobs_decode"
 OF_NAMES = "text_begins,text_equals,text_occurs"
-OF_WRITING = "put_text,put_unsigned,put_fixed,put_spaces_to,put_message,put_packed,packed_is_empty,packed_next"
+OF_WRITING = (
+    "put_text,put_unsigned,put_fixed,put_spaces_to,put_message,put_packed,packed_is_empty,packed_reader,packed_next"
+)
 OF_DECIMALS = "text_number,decimal_raw,decimal_is_whole"
-OF_TYPING = f"{OF_NAMES},{OF_DECIMALS},packed_occurs,packed_equals,packed_is,packed_copy,suggest_is_near"
+OF_TYPING = f"{OF_NAMES},{OF_DECIMALS},packed_occurs,packed_find,packed_equals,packed_is,packed_copy,suggest_is_near"
 OF_LINES = "editor_octet,editor_next,editor_show"
 OF_RECORDS = "splitter_octet,splitter_rest,record_to_wire"
 OF_FRAMES = "segment_join,segment_split_begin,segment_split_peek,segment_split_advance"
@@ -142,7 +144,6 @@ INTERRUPT = (
     *(*ESTIMATORS, "svpwm/*.c"),
     *("firmware/drive/*.c", "firmware/mode/*.c", "firmware/sources/*/*.c", "firmware/hysteresis/*.c"),
     *(SOURCES_TABLE, "made/drive_states.c", "made/start_phases.c"),
-    "firmware/dictionary/parameters.c",
     *(f"firmware/board/{name}.c" for name in ("derating", "functions", "speed_input")),
     *(f"firmware/commissioning/{name}.c" for name in ("sequence", "hold", "map", "spin", "staircase")),
 )
@@ -284,7 +285,7 @@ PARTS = (
     eva(
         "interrupt",
         INTERRUPT,
-        (*WHOLE, "-eva-slevel-function", "parameters_reset:200,follow_link:20,drive_read_samples:20"),
+        (*WHOLE, "-eva-slevel-function", "follow_link:20,drive_read_samples:20"),
         f"{OF_QMATH},turned,{OF_DROPS},{with_contract(*FLOORS)}",
         headers=(ROTATION_RANGES, DROP_RANGES, *FLOORS),
     ),
@@ -306,7 +307,7 @@ PARTS = (
         (
             *("tests/prove/commands.c", *TERMINAL, *BESIDE),
             *(f"firmware/console/{name}.c" for name in ("command*", "words_of_line", "s*")),
-            *(f"firmware/{folder}/commands.c" for folder in ("can", "scope", "store", "commissioning")),
+            *(f"firmware/{folder}/commands.c" for folder in ("can", "scope", "start/flying", "store", "commissioning")),
             "firmware/link/status.c",
         ),
         READER,
@@ -327,8 +328,12 @@ PARTS = (
             *(f"firmware/{folder}/requests.c" for folder in ("scope", "store", "commissioning")),
             *("firmware/hil/*.c", "firmware/base/clear.c", "hal/replay.c", *BESIDE),
         ),
-        (*READER, "-eva-split-return-function", "find:full"),  # a row says how long its bodies are
-        *(OF_QMATH, OF_WRITING, "packed_equals"),
+        # A row says how long its bodies are; rows of what the scope watches and of the signals go step by step.
+        (
+            *(*READER, "-eva-split-return-function", "find:full"),
+            *("-eva-slevel-function", "find:100,handle:100,drive_signals:300,record:20"),
+        ),
+        *(OF_QMATH, OF_WRITING, "packed_equals,packed_find"),
     ),
     of_link(
         "console",
