@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import sys
@@ -123,6 +124,17 @@ def tree(tmp_path: Path) -> Path:
     (tmp_path / costs.FILE).parent.mkdir()
     shutil.copy(ROOT / costs.FILE, tmp_path / costs.FILE)
     return tmp_path
+
+
+def test_every_promise_to_users_is_held_by_tests_that_there_are() -> None:
+    """Each row but that of the language, which no program reads."""
+    text = (ROOT / "docs/promises.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (\d+) \| (.+) \| (.+) \|$", text, re.MULTILINE)
+    assert [int(number) for number, _, _ in rows] == list(range(1, 26))
+    assert [promise for _, promise, held in rows if "](" not in held] == ["Plain English"]
+    for name, file in re.findall(r"\[`(\w+)`\]\(\.\./(\S+)\)", text):
+        there = (ROOT / file).read_text(encoding="utf-8")
+        assert re.search(rf"^(def {name}\(|TEST(_F|_P)?\(\w+,\s+{name}\))", there, re.MULTILINE), (name, file)
 
 
 def test_every_parameter_has_its_place_on_the_page() -> None:
