@@ -9,7 +9,7 @@ an undefined operation: overflow of a signed number, division by zero, a shift, 
 range, a value that was never set. WP proves contracts of tests/prove/, function by function. What neither excludes
 stands in tests/prove/alarms.txt, by part, function and kind: more than that is an error. With --defects, those
 of toolchain/proof/defects.py are planted into a copy of the sources, and each has to be found in the function where it
-is.
+is. What was read of a part is kept in OUT/kept as long as nothing changes that it was read from.
 """
 
 import csv
@@ -29,6 +29,7 @@ from subprocess import PIPE, STDOUT
 
 import compose
 import planted
+from proof import kept
 from proof.defects import DEFECTS
 from proof.parts import LONGEST, PARTS, PROVED, SHOWN_ELSEWHERE, Part
 from proof.shown import Shown
@@ -36,6 +37,7 @@ from proof.shown import Shown
 ROOT = Path(__file__).resolve().parent.parent
 FOLDERS = ("hal", "control", "svpwm", "estimators", "firmware", "tests/prove")
 MADE = "made"
+KEPT = "kept"
 ASK_THE_EDITION = {"firmware/dictionary/parameters.c", "firmware/drive/signals.c", "firmware/text/catalogue.c"}
 KNOWN = "tests/prove/alarms.txt"
 SECONDS = 1500
@@ -97,15 +99,39 @@ def is_open(part: Part, row: dict[str, str]) -> bool:
     return not related and not promised and status != "Never tried"
 
 
+def options_of(part: Part, out: Path) -> list[str]:
+    """Those of the preprocessor."""
+    return ["-I.", f"-I{out / MADE}", "-std=c99", *(word for name in part.headers for word in ("-include", name))]
+
+
+def command_of(part: Part, sources: list[str], out: Path) -> list[str]:
+    """How Frama-C is called to read a part."""
+    machine = ("-machdep", "gcc_x86_16", f"-cpp-extra-args={' '.join(options_of(part, out))}")
+    given = ("-eva-use-spec", part.given) if part.given else ()
+    named = ("-wp-fct", ",".join(part.proved)) if part.proved else ()
+    table = out / f"{part.name}.csv"
+    return ["frama-c", *machine, *sources, *part.flags, *given, *named, "-then", "-report-csv", str(table)]
+
+
+def read_or_kept(part: Part, out: Path) -> Read:
+    """What was read of the drive's part before, if that still holds; otherwise it is read, and kept."""
+    sources = sources_of(part, ROOT, out)
+    key = kept.key_of(command_of(part, sources, out), sources, options_of(part, out), ROOT, out)
+    known_of = kept.load(out / KEPT, part.name, key)
+    if known_of is not None:
+        alarms = Counter({(function, kind): count for function, kind, count in known_of["alarms"]})
+        return Read(alarms, known_of["words"], 0)
+    done = read(part, ROOT, out)
+    rows = [[function, kind, count] for (function, kind), count in sorted(done.alarms.items())]
+    kept.save(out / KEPT, part.name, key, {"alarms": rows, "words": done.words})
+    return done
+
+
 def read(part: Part, tree: Path, out: Path, defective: Collection[str] = ()) -> Read:
     """Lets Frama-C read a part; with defective functions no further than until each of them has shown itself."""
     table, log = out / f"{part.name}.csv", out / f"{part.name}.log"
-    included = " ".join(f"-include {header}" for header in part.headers)
-    machine = ("-machdep", "gcc_x86_16", f"-cpp-extra-args=-I. -I{out / MADE} -std=c99 {included}")
     sources = sources_of(part, tree, out)
-    given = ("-eva-use-spec", part.given) if part.given else ()
-    named = ("-wp-fct", ",".join(part.proved)) if part.proved else ()
-    command = ["frama-c", *machine, *sources, *part.flags, *given, *named, "-then", "-report-csv", str(table)]
+    command = command_of(part, sources, out)
     begin = time.monotonic()
     headers = [path.relative_to(tree).as_posix() for folder in FOLDERS for path in (tree / folder).rglob("*.h")]
     own = [file for file in sources if not Path(file).is_absolute()]
@@ -155,11 +181,18 @@ def more_than(alarms: Counter[Alarm], bound: Counter[Alarm]) -> dict[Alarm, int]
     return {alarm: count for alarm, count in sorted(alarms.items()) if count > bound[alarm]}
 
 
-def at_once(work: Callable[[Part], Read], parts: list[Part]) -> Iterator[tuple[Part, Read]]:
-    """The parts' readings, two at a time."""
+def at_once(work: Callable[[Part], Read], parts: list[Part]) -> Iterator[tuple[Part, Read | RuntimeError]]:
+    """The parts' readings, two at a time, or why one could not be read."""
     ordered = sorted(parts, key=lambda part: part.name not in LONGEST)
+
+    def tried(part: Part) -> Read | RuntimeError:
+        try:
+            return work(part)
+        except RuntimeError as error:
+            return error
+
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        begun = {pool.submit(work, part): part for part in ordered}
+        begun = {pool.submit(tried, part): part for part in ordered}
         yield from ((begun[ended], ended.result()) for ended in as_completed(begun))
 
 
@@ -167,15 +200,20 @@ def check(out: Path, wanted: list[str]) -> int:
     """Reads the parts; prints a line for each, and what is new. Of all of them, the book's table goes to OUT."""
     status, bounds, rows = 0, known(), []
     parts = [part for part in PARTS if not wanted or part.name in wanted]
-    for part, done in at_once(lambda part: read(part, ROOT, out), parts):
+    for part, done in at_once(lambda part: read_or_kept(part, out), parts):
+        if isinstance(done, RuntimeError):
+            status = 1
+            print(f"prove: {part.name}: {done}", flush=True)
+            continue
         bound = bounds[part.name]
         rows.append({"part": part.name, "words": done.words, "open": done.alarms.total()})
         left = f"{done.alarms.total()} left open ({bound.total()} known)"
-        print(f"prove: {part.name}: {done.words}, {left}, {done.seconds:.0f} s", flush=True)
+        spent = f"{done.seconds:.0f} s" if done.seconds else "as read before"
+        print(f"prove: {part.name}: {done.words}, {left}, {spent}", flush=True)
         for (function, kind), count in more_than(done.alarms, bound).items():
             status = 1
             print(f"{part.name} {function} {kind} {count}  # known are {bound[function, kind]}")
-    if not wanted:
+    if len(rows) == len(PARTS):
         rows.sort(key=lambda row: str(row["part"]))
         (out / "figures.json").write_text(json.dumps(rows), encoding="utf-8")
     return status
@@ -204,6 +242,9 @@ def plant(out: Path, wanted: list[str]) -> int:
         return read(part, out / "trees" / part.name, out, () if countable else functions)
 
     for part, done in at_once(look, parts):
+        if isinstance(done, RuntimeError):
+            complaints.append(f"{part.name}: {done}")
+            continue
         seen = {function for function, _ in more_than(done.alarms, bounds[part.name])}
         print(f"prove: {part.name}: {len(defects[part.name])} defects planted, {done.seconds:.0f} s", flush=True)
         complaints += [f"{d.function}: {d.wrong!r} is not found" for d in defects[part.name] if d.function not in seen]
