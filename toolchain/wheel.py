@@ -56,6 +56,10 @@ def client(out: Path, work: Path) -> Path:
         (work / folder).mkdir(parents=True)
         for table in sorted((SOURCE / folder).glob("*.csv")):
             shutil.copy(table, work / folder)
+    book = work / "stillspin" / "docs"  # what the page in the browser links to
+    shutil.copytree(ROOT / "docs" / "images", book / "images")
+    for page in sorted((ROOT / "docs").glob("*.md")):
+        shutil.copy(page, book)
     shutil.copy(SOURCE / "pyproject.toml", work)
     shutil.copy(ROOT / "LICENSE", work)
     table = json.dumps(core.load().parameters(), indent=1, default=list)

@@ -3,8 +3,9 @@
 import asyncio
 import http.client
 import json
+import re
 import threading
-from urllib.parse import urlsplit
+from urllib.parse import urljoin, urlsplit
 
 import aiohttp
 import pytest
@@ -29,7 +30,7 @@ def get(server, path, headers=None, method="GET"):
         connection.putheader(name, value)
     connection.endheaders()
     answer = connection.getresponse()
-    return answer.status, dict(answer.getheaders()), answer.read().decode()
+    return answer.status, dict(answer.getheaders()), answer.read().decode(errors="replace")
 
 
 def cookie(server):
@@ -368,3 +369,19 @@ def test_the_dead_mans_switch():
     switch.tell("a")
     assert not switch.is_held_by("a")
     assert not switch.release("a")
+
+
+def test_the_books_pages_are_served_and_every_link_of_the_guide_leads_to_one(server):
+    """With the cookie alone, like everything else here; a link that leaves the book is its words."""
+    assert get(server, "/book/tuning.md")[0] == 403
+    for start in ("tuning", "parameters"):
+        status, headers, body = get(server, f"/book/{start}.md", cookie(server))
+        assert (status, headers["Content-Type"]) == (200, "text/html; charset=utf-8")
+        targets = set(re.findall(r'(?:href|src)="([^"#]+)(?:#[^"]*)?"', body)) - {"data:,"}
+        assert len(targets) > 4
+        for target in targets:
+            assert get(server, urljoin(f"/book/{start}.md", target), cookie(server))[0] == 200, target
+    assert 'id="speed_ramp"' in body
+    assert get(server, "/book/nothing.md", cookie(server))[0] == 404
+    assert get(server, "/book/..%2FREADME.md", cookie(server))[0] == 404
+    assert "../" not in get(server, "/book/architecture.md", cookie(server))[2]

@@ -157,3 +157,20 @@ def test_another_site_in_the_same_browser_gets_nothing(tuned, server):
     )
     assert outcome == {"script": "refused", "socket": "refused", "text": "refused"}
     other.close()
+
+
+def test_a_parameter_leads_to_what_it_does_and_the_guide_is_a_click_away(tuned):
+    tuned.click("[data-tab=parameters]")
+    with tuned.expect_popup() as opened:
+        tuned.click(".parameter[data-name=speed_ramp] .name a")
+    book = opened.value
+    heading = book.locator("h3#speed_ramp")
+    heading.wait_for()
+    assert book.evaluate("document.querySelector(':target').id") == "speed_ramp"
+    assert 0 <= heading.bounding_box()["y"] < 100
+    assert book.evaluate("document.documentElement.scrollWidth") == 1280
+    tuned.click("#guide")  # into the tab that is open
+    book.wait_for_selector("h1:has-text('Tuning by what you see')")
+    book.wait_for_function("[...document.images].every((image) => image.complete && image.naturalWidth > 0)")
+    book.set_viewport_size({"width": 390, "height": 844})
+    assert book.evaluate("document.documentElement.scrollWidth") == 390

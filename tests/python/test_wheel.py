@@ -5,6 +5,7 @@ import sys
 import urllib.request
 from email.parser import Parser
 from pathlib import Path
+from urllib.parse import urljoin
 from zipfile import ZipFile
 
 import desk
@@ -122,6 +123,11 @@ def test_the_page_is_served_from_the_wheel(client, board):
             page = next(line for line in running.stdout if line.startswith("page: ")).split()[1]
             with urllib.request.urlopen(page, timeout=10) as answer:
                 assert b"<script" in answer.read()
+                given = {"Cookie": answer.headers["Set-Cookie"].partition(";")[0]}
+            for name in ("tuning.md", "images/tuning-noise.png"):
+                guide = urllib.request.Request(urljoin(page, f"/book/{name}"), headers=given)
+                with urllib.request.urlopen(guide, timeout=10) as answer:
+                    assert len(answer.read()) > 1000
         finally:
             running.terminate()
 

@@ -31,6 +31,7 @@ _ECHO = 3.0
 _ANSWER = 6.0
 """Seconds until the prompt: the console gives a start five. `watch` never comes to an end."""
 _REFRESH = 0.5
+_GUIDE = "which parameter to change for what you see: docs/tuning.md; 'stillspin tune' shows it, too"
 _LEAVE = {"exit", "quit"}
 _TWICE = 2.0
 """Seconds within which a second Ctrl-C asks whether to leave."""
@@ -123,6 +124,7 @@ def _talk(drive: Drive, current: Session) -> None:
     thread = threading.Thread(target=bar.run, daemon=True)
     thread.start()
     print(f"{drive.version} on {drive.link.transport.name}; help lists what it understands, Ctrl-D leaves")
+    print(_GUIDE)
     interrupted = -_TWICE
     with patch_stdout(), drive.link.listening(text=show):
         try:

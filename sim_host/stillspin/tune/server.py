@@ -13,7 +13,7 @@ from aiohttp import web
 
 from stillspin.drive import Drive
 from stillspin.link.errors import DriveError
-from stillspin.tune import files
+from stillspin.tune import book, files
 from stillspin.tune.dead_man import PATIENCE
 from stillspin.tune.guard import Guard
 from stillspin.tune.listen import LOOPBACK, Outside, listening
@@ -96,6 +96,7 @@ class Server:
         names = "{name:history\\.parquet|history\\.csv|parameters\\.toml}"
         application.router.add_get(f"/file/{names}", files.handler(self.bench))
         application.router.add_static("/page", _PAGE)
+        book.add_to(application.router)
         application.on_shutdown.append(self._pages.say_goodbye)
         return application
 

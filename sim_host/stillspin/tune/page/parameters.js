@@ -46,10 +46,11 @@ export class Parameters {
     const back = make("button", { class: "back", title: `Default: ${initial.toFixed(decimals)} ${unit}` }, "↺");
     back.setAttribute("aria-label", `${name} to its default`);
     if (!always) back.setAttribute("data-stopped", "");
+    const guide = make("a", { href: `/book/parameters.md#${name}`, target: "stillspin-book", title: "What one sees when it changes" }, name);
     const element = make(
       "div",
       { class: "parameter", "data-name": name },
-      make("div", { class: "name" }, name, always ? null : make("i", { title: "Not while the motor is energised" }, " ◦")),
+      make("div", { class: "name" }, guide, always ? null : make("i", { title: "Not while the motor is energised" }, " ◦")),
       make("div", { class: "value" }, input, make("em", {}, unit), back),
       make("div", { class: "range" }, range),
       make("div", { class: "meaning" }, meaning, error),
