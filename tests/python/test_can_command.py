@@ -34,6 +34,36 @@ def test_every_message_of_the_description_is_decoded_for_every_node():
             assert all(f"{signal.name} " in line for signal in described.signals if not signal.is_multiplexer)
 
 
+def test_numbers_that_a_node_does_not_know_are_unknown_in_its_telemetry_too():
+    """The flag is in STATUS alone; each node has its own, and a node that has said nothing yet knows nothing."""
+    decoder = Decoder(load(_DBC))
+
+    def status(node, known):
+        return decoder.line(message(0x180 + node, bytes((2 | known << 7, 0, 0, 0, 40, 0, 0, 0))))
+
+    def telemetry(node):
+        return decoder.line(message(0x200 + node, bytes((100, 0, 0, 0, 0x10, 0x27, 0, 0))))
+
+    unknown = "CURRENT_D unknown  CURRENT_Q unknown  LINK_VOLTAGE 100 V  LOAD_TORQUE unknown"
+    known = "CURRENT_D 0.1 A  CURRENT_Q 0 A  LINK_VOLTAGE 100 V  LOAD_TORQUE 0 Nm"
+    assert telemetry(1).endswith(unknown)
+    assert status(1, known=True).endswith("SPEED 10 rpm  REFERENCE 0 rpm")
+    assert telemetry(1).endswith(known)
+    assert telemetry(2).endswith(unknown)
+    assert status(2, known=False).endswith("SPEED unknown  REFERENCE 0 rpm")
+    assert telemetry(1).endswith(known)
+    assert status(1, known=False).endswith("SPEED unknown  REFERENCE 0 rpm")
+    assert telemetry(1).endswith(unknown)
+
+
+def test_another_description_without_the_flag_is_decoded_as_it_stands(tmp_path):
+    lines = _DBC.read_text(encoding="utf-8").splitlines()
+    (tmp_path / "other.dbc").write_text("\n".join(line for line in lines if "SPEED_KNOWN" not in line))
+    assert "SPEED 10 rpm" in Decoder(load(tmp_path / "other.dbc")).line(
+        message(0x181, bytes((0, 0, 0, 0, 40, 0, 0, 0)))
+    )
+
+
 @pytest.mark.parametrize(
     ("frame", "line"),
     [

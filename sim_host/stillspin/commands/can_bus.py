@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -26,6 +26,9 @@ _DBC = Path(__file__).resolve().parent.parent / "can" / "stillspin.dbc"
 _NODE_MASK = 0x7F
 """An identifier is a base, a multiple of 0x80, plus the node."""
 _WAIT = 0.2
+_FLAG = ("STATUS", "SPEED_KNOWN")
+_BY_FLAG = {"STATUS": ("SPEED",), "TELEMETRY_1": ("CURRENT_D", "CURRENT_Q", "LOAD_TORQUE")}
+"""Signals that are 0 on the bus, and unknown, while the flag is 0."""
 
 
 def bus(
@@ -105,6 +108,10 @@ class Decoder:
     def __init__(self, database: Database) -> None:
         self._database = database
         self._bases = {message.frame_id & ~_NODE_MASK: message for message in database.messages}
+        described = {(message.name, signal.name) for message in database.messages for signal in message.signals}
+        self._flagged = _FLAG in described
+        self._known: set[int] = set()
+        """Nodes whose last STATUS says that angle and speed are known."""
 
     def line(self, message: can.Message) -> str:
         """A line for a message: time, node, name, signals with units."""
@@ -121,11 +128,18 @@ class Decoder:
         except (DatabaseError, ValueError):
             return f"{head}  node {node}  {known.name}  {data.hex(' ')} (not as the description says)"
         units = {signal.name: signal.unit or "" for signal in known.signals}
-        return f"{head}  node {node}  {known.name}  {_signals(values, units)}"
+        return f"{head}  node {node}  {known.name}  {_signals(values, units, self._unknown(node, known.name, values))}"
+
+    def _unknown(self, node: int, name: str, values: Any) -> Collection[str]:
+        """Signals of a message whose numbers mean nothing now: a node that has not said that it knows does not."""
+        if self._flagged and name == _FLAG[0]:
+            (self._known.add if values[_FLAG[1]] else self._known.discard)(node)
+        return _BY_FLAG.get(name, ()) if self._flagged and node not in self._known else ()
 
 
-def _signals(values: Any, units: Mapping[str, str]) -> str:
-    return "  ".join(f"{name} {_number(value)} {units[name]}".rstrip() for name, value in values.items())
+def _signals(values: Any, units: Mapping[str, str], unknown: Collection[str]) -> str:
+    shown = {name: f"{_number(value)} {units[name]}".rstrip() for name, value in values.items()}
+    return "  ".join(f"{name} {'unknown' if name in unknown else text}" for name, text in shown.items())
 
 
 def _number(value: Any) -> str:
