@@ -4,7 +4,11 @@ import csv
 import errno
 import json
 import os
+import signal
 import struct
+import subprocess
+import sys
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -53,6 +57,27 @@ def test_what_differs_is_shown_and_loaded(ask, fake, tmp_path):
     assert fake.store == 5
     assert "speed_ramp = 500" in ask("params", "dump", "--changed").stdout
     assert "1 of 7 parameters different" in ask("params", "diff", "defaults").stdout
+
+
+def test_what_the_next_power_on_would_not_have_is_said_behind_what_changed_it(ask, fake, tmp_path):
+    lost = "stillspin: 1 parameter is not saved: 'save' keeps what is in force\n"
+    (tmp_path / "some.toml").write_text("[parameters]\nspeed_ramp = 500\n")
+    assert ask("console", "-c", "status").stderr == ""
+    assert ask("params", "load", "some.toml").stderr == lost
+    assert ask("console", "-c", "status", "-c", "version").stderr == lost
+    assert ask("params", "load", "some.toml", "--save").stderr == ""
+    assert ask("console", "-c", "status").stderr == ""
+
+
+def test_the_pages_server_says_at_its_end_what_is_not_saved(fake):
+    serve = [sys.executable, "-m", "stillspin", "tune", "--no-open", "--drive", fake.port]
+    with subprocess.Popen(serve, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        assert any(line.startswith("Whoever has this address") for line in running.stdout)
+        fake.values[86] = 500 * 2**8
+        time.sleep(0.2)
+        running.send_signal(signal.SIGINT)
+        assert running.communicate(timeout=60)[1].endswith("1 parameter is not saved: 'save' keeps what is in force\n")
+        assert running.returncode == 0
 
 
 def test_nothing_is_sent_of_a_file_that_is_wrong(ask, fake, tmp_path):

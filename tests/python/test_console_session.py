@@ -43,6 +43,7 @@ class Person:
         os.set_blocking(self._master, False)
         self.seen = ""
         assert self.sees("Ctrl-D leaves"), self.seen
+        assert self.sees("docs/tuning.md"), self.seen
         assert self.sees(DRAWS), self.seen
 
     def _look(self):

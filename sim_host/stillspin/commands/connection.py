@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Annotated
@@ -48,3 +49,9 @@ def opened(where: str) -> Iterator[Drive]:
         drive = Drive.open(wanted(where), progress=lambda share: bar.update(task, completed=share, visible=True))
     with drive:
         yield drive
+
+
+def say_unsaved(drive: Drive) -> None:
+    """On stderr, what would be lost with the power; nothing where nothing would, or where nobody can be asked."""
+    if not drive.link.lost and (words := drive.status().unsaved_text):
+        print(f"stillspin: {words}", file=sys.stderr)

@@ -17,7 +17,7 @@ from prompt_toolkit.history import FileHistory, History, InMemoryHistory
 from prompt_toolkit.patch_stdout import patch_stdout
 
 from stillspin.commands.completion import Words
-from stillspin.commands.connection import DriveOption, opened
+from stillspin.commands.connection import DriveOption, opened, say_unsaved
 from stillspin.commands.console_session import Session, session
 from stillspin.commands.transcript import Transcript
 from stillspin.drive import Drive
@@ -54,14 +54,18 @@ def console(
             raise InputError(f"{drive.link.transport.name}: the console is on the serial port only")
         with session(drive, keep_running=keep_running) as current:
             if command or not sys.stdin.isatty():
-                _say_all(drive, current, command or sys.stdin)
+                status = _say_all(drive, current, command or sys.stdin)
+                say_unsaved(drive)
             else:
+                status = ExitCode.DONE
                 _talk(drive, current)
         if drive.link.lost:
             raise drive.link.lost
+    if status:
+        raise typer.Exit(status)
 
 
-def _say_all(drive: Drive, current: Session, lines: Iterable[str]) -> None:
+def _say_all(drive: Drive, current: Session, lines: Iterable[str]) -> ExitCode:
     """Send lines, also behind one that is refused: it may be the one that stops the motor."""
     status = ExitCode.DONE
     before = _refusals(drive)
@@ -72,8 +76,7 @@ def _say_all(drive: Drive, current: Session, lines: Iterable[str]) -> None:
             print(f"stillspin: not carried out: {line.strip()}", file=sys.stderr)
             status = ExitCode.SHORT
         before = after
-    if status:
-        raise typer.Exit(status)
+    return status
 
 
 def _refusals(drive: Drive) -> int:

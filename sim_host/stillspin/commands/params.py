@@ -10,7 +10,7 @@ import typer
 
 from stillspin import core
 from stillspin.commands import parameter_file
-from stillspin.commands.connection import DriveOption, opened
+from stillspin.commands.connection import DriveOption, opened, say_unsaved
 from stillspin.commands.parameter_file import Difference
 from stillspin.counted import counted
 from stillspin.drive import Drive
@@ -102,6 +102,7 @@ def load(
         if not complaints and save:
             drive.save()
         after = drive.parameters()
+        say_unsaved(drive)
     changed = sum(after[parameter.name] == value for parameter, _, value in rows)
     print(f"{counted(changed, 'parameter', len(wanted))} changed{', saved' if save and not complaints else ''}")
     for words in complaints:

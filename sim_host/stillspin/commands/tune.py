@@ -12,9 +12,10 @@ from typing import Annotated
 
 import typer
 
-from stillspin.commands.connection import DriveOption, opened
+from stillspin.commands.connection import DriveOption, opened, say_unsaved
 from stillspin.drive import Drive
 from stillspin.errors import InputError
+from stillspin.link.errors import DriveError
 from stillspin.options import whole
 from stillspin.tune.listen import Outside, outside
 from stillspin.tune.server import Server
@@ -58,6 +59,8 @@ def tune(
             threading.Event().wait()
         except KeyboardInterrupt:
             print("stopped")
+            with contextlib.suppress(DriveError):  # it is away
+                say_unsaved(server.bench.drive)
 
 
 def _server(drive: Drive, where: str, port: int, beyond: Outside | None) -> Server:
