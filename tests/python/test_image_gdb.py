@@ -106,15 +106,15 @@ def at(desk):
     return desk.names.addresses
 
 
-def test_the_program_waits_for_a_debugger_at_its_first_instruction(client):
+def test_the_program_waits_for_a_debugger_at_its_first_instruction(client, at):
     assert "qXfer:features:read+" in client.ask("qSupported:multiprocess+;swbreak+")
     assert client.ask("?") == "S05"
     assert client.register("PC") == 0x3F7FF6
     assert client.ask("vMustReplyEmpty") == ""
-    assert client.ask("Z0,3f4093,2") == "OK"
+    assert client.ask(f"Z0,{at['sample']:x},2") == "OK"
     client.send("c")
     assert client.answer() == "S05"
-    assert client.register("PC") == 0x3F4093, "a debugger that comes first finds the program at its beginning"
+    assert client.register("PC") == at["sample"], "a debugger that comes first finds the program at its beginning"
 
 
 def test_the_description_has_every_register(client):
