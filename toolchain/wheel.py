@@ -47,8 +47,9 @@ def _wheel(staged: Path, out: Path) -> Path:
 
 
 def client(out: Path, work: Path) -> Path:
-    """The wheel of the client, from the sources and the firmware's own parameter table."""
+    """The wheel of the client, from the sources and the firmware's own parameter table; the book and the schemas are in it."""
     from stillspin import core  # noqa: PLC0415 - the package is looked for only where a wheel is wanted
+    from stillspin.commands import schema  # noqa: PLC0415
 
     for folder in FOLDERS:
         shutil.copytree(SOURCE / folder, work / folder, ignore=_NOT_COPIED)
@@ -64,6 +65,10 @@ def client(out: Path, work: Path) -> Path:
     shutil.copy(ROOT / "LICENSE", work)
     table = json.dumps(core.load().parameters(), indent=1, default=list)
     (work / "stillspin" / core.PARAMETERS).write_text(table + "\n", encoding="utf-8")
+    schemas = work / "stillspin" / schema.SHIPPED
+    schemas.mkdir()
+    for kind in schema.KINDS:
+        (schemas / f"{kind}.json").write_text(schema.made(kind), encoding="utf-8")
     return _wheel(work, out)
 
 

@@ -14,6 +14,7 @@ from desk import needs_board
 from empty_environment import Environment, closure
 
 import stillspin
+from stillspin.commands import schema
 
 pytestmark = needs_board
 
@@ -144,6 +145,12 @@ def test_a_demonstration_is_made_and_flashed(client, tmp_path):
 def test_the_firmwares_table_is_in_the_wheel(client):
     said = client.run("stillspin", "params")
     assert "pole_pairs" in said.stdout, said.stderr
+
+
+@pytest.mark.parametrize("kind", schema.KINDS)
+def test_the_schemas_for_editors_are_in_the_wheel_as_the_whole_installation_makes_them(client, kind):
+    said = client.run("stillspin", "schema", kind)
+    assert said.stdout == schema.made(kind), said.stderr
 
 
 def test_letters_that_a_file_on_windows_does_not_take_are_no_traceback(client):

@@ -13,8 +13,12 @@ from stillspin.campaign import faults, spread
 from stillspin.cases import file_schema
 from stillspin.commands import parameter_file
 from stillspin.errors import InputError, did_you_mean
+from stillspin.resources import PACKAGE
 
 _OF_CAMPAIGNS = {"spread": spread.schema, "faults": faults.schema}
+KINDS = (*file_schema.KINDS, *_OF_CAMPAIGNS)
+SHIPPED = Path("schemas")
+"""In a wheel, which has no native module to ask: KIND.json for each, put there by toolchain/wheel.py."""
 
 
 def schema(
@@ -23,15 +27,25 @@ def schema(
     out: Annotated[Path | None, typer.Option("--out", "-o", help="File to write [default: to the terminal].")] = None,
 ) -> None:
     """Write the JSON schema of a kind of file; editors check a file with it whose first line is #:schema FILE."""
-    if kind not in (*file_schema.KINDS, *_OF_CAMPAIGNS):
-        raise InputError(f"there is no kind of file '{kind}'{did_you_mean(kind, (*file_schema.KINDS, *_OF_CAMPAIGNS))}")
-    native = core.load()
-    entries = core.plant_schema(native)
-    of_campaign = _OF_CAMPAIGNS.get(kind)
-    made = of_campaign(entries) if of_campaign else file_schema.schema(kind, entries, core.parameters(native))
-    content = json.dumps(made, indent=2, ensure_ascii=False) + "\n"
+    if kind not in KINDS:
+        raise InputError(f"there is no kind of file '{kind}'{did_you_mean(kind, KINDS)}")
+    shipped = PACKAGE / SHIPPED / f"{kind}.json"
+    content = shipped.read_text(encoding="utf-8") if shipped.is_file() else made(kind)
     if out is None:
         print(content, end="")
         return
     parameter_file.write(out, content)
     print(f"see {out}; begin a {kind} file beside it with: #:schema ./{out.name}")
+
+
+def made(kind: str) -> str:
+    """The schema of a kind of file, one of KINDS, by the virtual drive's own entries and parameters.
+
+    Raises:
+        InputError: there is no virtual drive to ask.
+    """
+    native = core.load()
+    entries = core.plant_schema(native)
+    of_campaign = _OF_CAMPAIGNS.get(kind)
+    found = of_campaign(entries) if of_campaign else file_schema.schema(kind, entries, core.parameters(native))
+    return json.dumps(found, indent=2, ensure_ascii=False) + "\n"
