@@ -91,7 +91,8 @@ mutants: setup ## change the drive's C in SAMPLE places (20, or all) of each par
 	@$(PYTHON) toolchain/mutants.py $(SAMPLE)
 	@if [[ "$(SAMPLE)" == "$(PUBLISHED)" ]]; then $(PYTHON) toolchain/keep.py mutants; fi
 
-verify: image-check isr-cost cppcheck prove vectors int16 fuzz16 mcdc ## the checks that take long: these eight
+verify: image-check isr-cost cppcheck prove vectors int16 fuzz16 mcdc ## the checks that take long: these eight, and whether any published figure is of older sources
+	@$(PYTHON) toolchain/figures.py --list
 
 loss: build ## lose synchronism on purpose in some 400 runs and print how soon the drive notices
 	@$(BUILD)/tests/bench/stillspin_loss_campaign

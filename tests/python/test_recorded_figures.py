@@ -110,6 +110,12 @@ def test_records_of_older_sources_are_listed(
     assert capsys.readouterr().out == "figures: prove was made from older sources; renew it: make prove\n"
 
 
+def test_the_checks_that_take_long_end_with_the_figures_of_older_sources() -> None:
+    """Where make runs it, a failure of the last line is one of `make verify`."""
+    said = subprocess.run(["make", "-n", "verify"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    assert said.splitlines()[-1].endswith("toolchain/figures.py --list")
+
+
 @pytest.mark.parametrize(("status", "writes", "kept"), [(0, True, 2), (1, True, 2), (1, False, 1), (0, False, 1)])
 def test_what_a_command_measured_is_kept_even_when_it_is_beyond_its_limit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, status: int, writes: bool, kept: int
