@@ -47,7 +47,7 @@ def _wheel(staged: Path, out: Path) -> Path:
 
 
 def client(out: Path, work: Path) -> Path:
-    """The wheel of the client, from the sources and the firmware's own parameter table, with the book and the schemas."""
+    """The wheel of the client: the sources, the firmware's own parameter table, the book, the schemas."""
     from stillspin import core  # noqa: PLC0415 - the package is looked for only where a wheel is wanted
     from stillspin.commands import schema  # noqa: PLC0415
 

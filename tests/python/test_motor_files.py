@@ -159,6 +159,19 @@ def test_what_is_not_stated_is_noted(native, tmp_path):
     assert "note   mechanics.inertia is not stated; the drive keeps" in told("check", tmp_path / "pump.toml").stdout
 
 
+LEFT = "start_current 10 A", "if_current 8 A", "polarity_current 3 A", "speed_alpha 200 A2s2", "observer_load_step 2 Nm"
+
+
+def test_what_neither_follows_nor_is_stated_is_named_with_the_default_that_holds(native, tmp_path):
+    """By unit: no list of names to forget one in; what is off by default, or follows from a parameter, is not named."""
+    (tmp_path / "pump.toml").write_text(SALIENT + "start_current = 4\n", encoding="utf-8")
+    (note,) = (line for line in told("check", tmp_path / "pump.toml").stdout.splitlines() if "nor implied" in line)
+    assert note.startswith("note   ")
+    assert [words in note for words in LEFT] == [False, True, True, True, True]
+    for name in ("observer_noise", "map_current", "weakening_limit", "id_low_speed", "overload_current", "drift_time"):
+        assert f" {name} " not in note
+
+
 def test_a_bad_file_is_bad_input(native, tmp_path):
     (tmp_path / "bad.toml").write_text("[machine]\nresistanze = 1\n", encoding="utf-8")
     result = told("check", tmp_path / "bad.toml")
@@ -176,6 +189,7 @@ def test_a_new_motor_is_written_from_a_nameplate_and_works(native, tmp_path):
     path = tmp_path / "new.toml"
     made = told("new", path, *(part for pair in ANSWERS.items() for part in pair))
     assert made.exit_code == 0, made.stderr
+    assert all(words in made.stdout for words in LEFT)
     machine = tomllib.loads(path.read_text(encoding="utf-8"))["machine"]
     assert machine["magnet_flux"] == pytest.approx(0.16, rel=1e-3)
     assert machine["rated_peak_current"] == pytest.approx(10.89, rel=1e-3)

@@ -11,10 +11,10 @@ import typer
 
 from stillspin import catalogue, core
 from stillspin.called import called
-from stillspin.cases import flux_table, motor_check, profile, questions
+from stillspin.cases import flux_table, motor_check, nameplate, profile, questions
 from stillspin.cases.flux_table import Columns
 from stillspin.cases.motor_told import Motor
-from stillspin.commands import parameter_file
+from stillspin.commands import motor_defaults, parameter_file
 from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
@@ -63,6 +63,8 @@ def check(
     found = motor_check.findings(Motor(chosen, schema, known), native)
     for words in chosen.not_stated:
         print(f"note   {words}")
+    if left := motor_defaults.words(known.values(), chosen.parameters):
+        print(f"note   {left}")
     for finding in found:
         print(f"{'works' if finding.works else 'WRONG':<6} {finding.title}: {finding.words}")
     wrong = sum(not finding.works for finding in found)
@@ -109,7 +111,11 @@ def new(
         "current_range": current_range,
         "speed": speed,
     }
-    parameter_file.write(file, questions.file_text(file.stem, questions.read(typed)))
+    answers = questions.read(typed)
+    parameter_file.write(file, questions.file_text(file.stem, answers))
+    stated = questions.stated(answers)
+    told = {**nameplate.following(questions.plant(answers), stated), **stated}
+    print(motor_defaults.words(core.known_parameters().values(), told))
     print(f"{file} written; what will work with it: {called()} motor check {file}")
 
 
