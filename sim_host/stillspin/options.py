@@ -72,7 +72,7 @@ AfterOption = Annotated[
         "--after",
         parser=number("--after", 0, unit="s"),
         metavar="SECONDS",
-        help="Let it run before, from power-on.",
+        help="Let the image run so long from power-on first.",
     ),
 ]
 ProfileOption = Annotated[

@@ -92,9 +92,12 @@ def show(
         str,
         typer.Option("--code", metavar="PLACE", help="List the code from a name, FILE:LINE or an address on instead."),
     ] = "",
-    lines: Annotated[int, typer.Option("--lines", min=1, max=65536, help="As many lines of it.")] = 24,
+    lines: Annotated[int, typer.Option("--lines", min=1, max=65536, help="How many lines of code to list.")] = 24,
 ) -> None:
-    """Say what an image loads where, where it runs, and how full the memories are; exit status 1: some is in none."""
+    """Say what an image loads where, where it runs, and how full the memories are.
+
+    Exit status 1 when some of it lies in no memory.
+    """
     image = opened.read(file)
     program = image.program
     if code:

@@ -63,7 +63,10 @@ def inject(
     interrupt: Annotated[str, typer.Option("--interrupt", metavar="INTx.y", help="Which, by its line in the PIE.")],
     begin: Annotated[str, typer.Option("--from", metavar="PLACE", help="A name, FILE:LINE or an address.")],
     end: Annotated[
-        str, typer.Option("--to", metavar="PLACE", help="Where the stretch ends; none is once around to its beginning.")
+        str,
+        typer.Option(
+            "--to", metavar="PLACE", help="Where the stretch ends; without it, at its beginning, once around a loop."
+        ),
     ] = "",
     compare: Annotated[
         list[str] | None,

@@ -18,11 +18,13 @@ def trace(
     file: ImageArgument,
     begin: Annotated[str, typer.Option("--from", metavar="PLACE", help="A name, FILE:LINE or an address.")] = "",
     end: Annotated[str, typer.Option("--to", metavar="PLACE", help="The last instructions before this place.")] = "",
-    count: Annotated[int, typer.Option("--instructions", min=1, max=100_000, help="As many.")] = 40,
+    count: Annotated[int, typer.Option("--instructions", min=1, max=100_000, help="How many to list.")] = 40,
     after: AfterOption = 0.0,
     within: Annotated[
         float,
-        typer.Option("--within", parser=number("--within", 1e-6, unit="s"), metavar="SECONDS", help="Give up then."),
+        typer.Option(
+            "--within", parser=number("--within", 1e-6, unit="s"), metavar="SECONDS", help="Give up after so long."
+        ),
     ] = 0.1,
     profile_name: ProfileOption = "bench",
     motor: MotorOption = resources.DEFAULT_MOTOR,
