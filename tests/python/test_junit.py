@@ -5,8 +5,10 @@ import xml.etree.ElementTree as ET
 import pytest
 from typer.testing import CliRunner
 
+import stillspin
 from stillspin import cli
 from stillspin.commands import hil
+from stillspin.drive.own import firmware
 from stillspin.hil.results import Row
 from stillspin.report import junit
 from stillspin.runs import campaign, startup
@@ -23,22 +25,29 @@ COMMAND = [
 ]
 
 
+def properties(element):
+    return {each.get("name"): each.get("value") for each in element.find("properties")}
+
+
 def read(file):
     """Cases by class and name, with their verdicts; the counts have to agree with them."""
     top = ET.parse(file).getroot()
     assert top.tag == "testsuites"
     (suite,) = top
     assert suite.attrib == top.attrib
-    cases = {(case.get("classname"), case.get("name")): case for case in suite}
-    kinds = [verdict.tag for case in suite for verdict in case]
-    assert int(suite.get("tests")) == len(suite) == len(cases)
+    listed = suite.findall("testcase")
+    assert properties(suite)["stillspin"].startswith(f"{stillspin.__version__}, sources ")
+    assert len(suite) == 1 + len(listed)
+    cases = {(case.get("classname"), case.get("name")): case for case in listed}
+    kinds = [verdict.tag for case in listed for verdict in case]
+    assert int(suite.get("tests")) == len(listed) == len(cases)
     for kind, plural in (
         ("failure", "failures"),
         ("error", "errors"),
         ("skipped", "skipped"),
     ):
         assert int(suite.get(plural)) == kinds.count(kind)
-    assert all(float(case.get("time")) >= 0.0 for case in suite)
+    assert all(float(case.get("time")) >= 0.0 for case in listed)
     return cases
 
 
@@ -66,6 +75,7 @@ def test_every_run_and_goal_is_a_case_and_the_same_seed_gives_the_same_file(tmp_
     assert (done.exit_code == 0) == (not any(len(case) for case in cases.values()))
     call(tmp_path)
     assert (tmp_path / "j.xml").read_bytes() == first
+    assert properties(ET.parse(tmp_path / "j.xml").getroot()[0])["firmware"] == firmware()
 
 
 def test_a_run_that_broke_off_is_an_error_and_its_goals_fail(tmp_path, core):
@@ -143,6 +153,7 @@ def test_a_start_fails_with_figure_and_goal(tmp_path, core, monkeypatch):
     assert short.find("failure").get("message") == "2.5 degrees backwards"
     assert "2.50 deg mechanical backwards, the goal is at most 2;" in short.find("failure").text
     assert broken.find("error").get("message") == "over-current"
+    assert properties(ET.parse(tmp_path / "j.xml").getroot()[0])["firmware"] == firmware()
 
 
 def test_a_board_that_differs_fails_and_one_that_is_lost_is_an_error(tmp_path, monkeypatch):
@@ -175,7 +186,8 @@ def test_a_board_that_differs_fails_and_one_that_is_lost_is_an_error(tmp_path, m
         verdicts.add(map(junit.of_loop, rows))
         verdicts.add([junit.left_out(Row(**{**vars(row), "run": "fourth"}))])
     good, differs, lost, skipped = read(tmp_path / "j.xml").values()
-    assert not len(good) and good.get("time") == "2.000"
+    assert [each.tag for each in good] == ["properties"] and good.get("time") == "2.000"
+    assert properties(good) == properties(differs) == properties(lost) == {"firmware": row.firmware}
     assert "step 7: gates on" in differs.find("failure").get("message")
     assert differs.find("failure").text == row.firmware
     assert lost.find("error").get("message") == "no answer ?"

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 from stillspin import cli, wilson
 from stillspin.commands import round_trips
+from stillspin.drive.own import firmware
 from stillspin.runs import records
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
@@ -51,6 +52,7 @@ def test_the_papers_scheme_goes_and_comes_back_both_ways(tmp_path):
     assert done.exit_code == 0, done.output
     assert "0 of 2 trips lost (0.0 to 65.8 % at 95 %)" in done.stdout
     found = json.loads((out / "trips.json").read_text())
+    assert found["firmware"] == firmware()
     assert (found["trips"], found["lost"]) == (2, [])
     assert 0.5 < found["position_error_peak"] < 20.0  # the hybrid's: the observer stays below half a degree
     cases = list(ET.parse(tmp_path / "j.xml").getroot().iter("testcase"))

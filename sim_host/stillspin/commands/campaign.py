@@ -135,7 +135,7 @@ def campaign(
     kept = results.Results(file, about, resume)
     numbers = sorted(set(case)) if case else range(1, count + 1)
     wanted = [(motor, each) for motor in named_motors for each in numbers]
-    with junit.Report(common.junit_file, NAME) as verdicts, output.fresh_directory(out) as place:
+    with junit.Report(common.junit_file, NAME, firmware) as verdicts, output.fresh_directory(out) as place:
         told = units.told(wish, plain, _bar)
         named = {unit.motor: unit for unit in told.units}
         todo = [(named[motor], drawer.case(each)) for motor, each in wanted if (motor, each) not in kept.rows]

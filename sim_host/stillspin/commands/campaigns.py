@@ -16,6 +16,7 @@ from stillspin.cases import drift as drifts
 from stillspin.cases import scenario_file
 from stillspin.cases.scenario import Scenario
 from stillspin.counted import counted
+from stillspin.drive.own import firmware
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.image import opened
@@ -163,7 +164,7 @@ def reproduce(
     """
     chosen = _chosen(scenarios or [], motor or [])
     own = {scenario.id for scenario in chosen}
-    verdicts = junit.Report(junit_file, "reproduce")
+    verdicts = junit.Report(junit_file, "reproduce", firmware)
 
     def told(result: ScenarioResult) -> None:
         if result.scenario.id in own:

@@ -16,6 +16,7 @@ from stillspin import resources, wilson
 from stillspin.cases.scenario import Figure, Goal, Reached, Run, Scenario
 from stillspin.commands.campaign_options import CampaignOptions, with_campaign_options
 from stillspin.counted import counted
+from stillspin.drive.own import firmware
 from stillspin.exit_codes import ExitCode
 from stillspin.options import CommissionOption, whole
 from stillspin.report import junit
@@ -106,7 +107,7 @@ def round_trips(
 
     The seed draws the angles, too. Exit status 1 when more trips are lost than --may-lose says.
     """
-    with junit.Report(common.junit_file, NAME) as verdicts:
+    with junit.Report(common.junit_file, NAME, firmware) as verdicts:
         options = Options(
             common.profile_name,
             common.seed,
@@ -121,7 +122,7 @@ def round_trips(
         done = carry_out([trips(runs, common.seed)], options)
         verdicts.add(_cases(done.results))
         verdicts.add(junit.of_refused(words) for words in done.refused)
-        found = outcome(done.results[0])
+        found = {"firmware": firmware(), **outcome(done.results[0])}
         (out / TRIPS).write_text(json.dumps(found, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
         for words in done.refused:
             print(f"stillspin: {words}", file=sys.stderr)

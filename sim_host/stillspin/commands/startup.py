@@ -9,6 +9,7 @@ import typer
 from rich.console import Console
 
 from stillspin.counted import counted
+from stillspin.drive.own import firmware
 from stillspin.exit_codes import ExitCode
 from stillspin.options import ClusterOption, JobsOption, ProfileOption, processors, whole
 from stillspin.report import junit, output, startup_report, tables
@@ -37,7 +38,7 @@ def startup_matrix(
     """Start from every angle, under loads and parameter errors, standing and turning; exit status 1 when one fails."""
     common, linear = startup.bench(profile_name)
     todo = startup.chosen(startup.cases(seeds, quick, linear), way or [])
-    with junit.Report(junit_file, "startup-matrix") as verdicts, output.fresh_directory(out) as directory:
+    with junit.Report(junit_file, "startup-matrix", firmware) as verdicts, output.fresh_directory(out) as directory:
         with Counter(Console(stderr=True), len(todo)) as counter:
 
             def told(outcome: startup.Outcome) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -12,9 +12,11 @@ from typing import Annotated, Self
 
 import typer
 
+from stillspin import __version__
 from stillspin.errors import InputError
 from stillspin.hil.results import Row
 from stillspin.resources import natural_key
+from stillspin.revision import revision
 from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.startup import ANGLE_LIMIT, BACKWARD_LIMIT, Outcome
 
@@ -33,6 +35,7 @@ class TestCase:
         seconds: what it took.
         kind: failure, error or skipped; empty when it is good.
         words: why; details: more of it.
+        firmware: of a board, where the verdict is of one.
     """
 
     classname: str
@@ -41,14 +44,18 @@ class TestCase:
     kind: str = ""
     words: str = ""
     details: str = ""
+    firmware: str = ""
 
 
 class Report:
     """A file of test cases that is there from entering on, and complete at leaving, however that comes about."""
 
-    def __init__(self, file: Path | None, name: str) -> None:
-        """Of a command; no file writes nothing."""
+    def __init__(self, file: Path | None, name: str, firmware: Callable[[], str] | None = None) -> None:
+        """Of a command; no file writes nothing. `firmware`: of all cases, asked for once, and only for a file."""
         self._file, self._name = file, name
+        self._about = {"stillspin": f"{__version__}, sources {revision()}"} if file else {}
+        if file and firmware:
+            self._about["firmware"] = firmware()
         self._cases: list[TestCase] = []
 
     def add(self, cases: Iterable[TestCase]) -> None:
@@ -82,7 +89,7 @@ class Report:
         file = self._file
         if not file:
             return
-        tree = ET.ElementTree(_tree(self._name, cases))
+        tree = ET.ElementTree(_tree(self._name, cases, self._about))
         ET.indent(tree)
         try:
             with tempfile.NamedTemporaryFile("wb", dir=file.absolute().parent, delete=False) as beside:
@@ -97,19 +104,28 @@ class Report:
             raise InputError(f"--junit {file}: cannot be written ({error.strerror})") from error
 
 
-def _tree(name: str, cases: list[TestCase]) -> ET.Element:
+def _tree(name: str, cases: list[TestCase], properties: Mapping[str, str]) -> ET.Element:
     counts = {"tests": str(len(cases))}
     for kind, plural in (("failure", "failures"), ("error", "errors"), ("skipped", "skipped")):
         counts[plural] = str(sum(case.kind == kind for case in cases))
     about = {"name": f"stillspin {name}", **counts, "time": f"{sum(case.seconds for case in cases):.3f}"}
     top = ET.Element("testsuites", about)
     suite = ET.SubElement(top, "testsuite", about)
+    _add_properties(suite, properties)
     for case in cases:
         entry = {"classname": case.classname, "name": case.name, "time": f"{case.seconds:.3f}"}
         element = ET.SubElement(suite, "testcase", entry)
+        if case.firmware:
+            _add_properties(element, {"firmware": case.firmware})
         if case.kind:
             ET.SubElement(element, case.kind, {"message": _clean(case.words)}).text = _clean(case.details) or None
     return top
+
+
+def _add_properties(to: ET.Element, properties: Mapping[str, str]) -> None:
+    listed = ET.SubElement(to, "properties")
+    for name, value in properties.items():
+        ET.SubElement(listed, "property", {"name": name, "value": _clean(value)})
 
 
 def _clean(text: str) -> str:
@@ -159,11 +175,11 @@ def of_loop(row: Row) -> TestCase:
     name = f"{row.run}{'' if row.whole else ' (its start)'}"
     about = f"hil.{row.link}.{row.scenario}"
     if row.lost:
-        return TestCase(about, name, row.seconds, "error", row.lost, row.firmware)
+        return TestCase(about, name, row.seconds, "error", row.lost, row.firmware, row.firmware)
     if row.identical:
-        return TestCase(about, name, row.seconds)
+        return TestCase(about, name, row.seconds, firmware=row.firmware)
     at = f"differs at step {row.step}: {row.words}" if row.step is not None else "the logs differ"
-    return TestCase(about, name, row.seconds, "failure", at, row.firmware)
+    return TestCase(about, name, row.seconds, "failure", at, row.firmware, row.firmware)
 
 
 def left_out(row: Row) -> TestCase:
