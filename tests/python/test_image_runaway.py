@@ -1,7 +1,7 @@
 """Programs that come to what is no instruction: where they first did, and that nothing else is counted for it."""
 
 import pytest
-from c28x_chip import MILLISECOND, blocks, linked_file
+from c28x_chip import MILLISECOND, PROGRAMS, blocks, linked_file
 from typer.testing import CliRunner
 
 from stillspin import cli, core
@@ -84,6 +84,33 @@ def test_the_commands_name_it(image):
     assert any(line.startswith("(outside of the memories) ") for line in lines)
     assert lines[-2].startswith("warning: the program came to an illegal instruction at 0x012345, ")
     assert lines[-1].endswith("what it did behind the illegal instruction is among them")
+
+
+@pytest.fixture
+def storm(tmp_path):
+    """A program without watchdog that calls code in RAM which nobody has copied there."""
+    source = tmp_path / "storm.asm"
+    source.write_text(f'        .copy "{PROGRAMS / "start.asm"}"\nmain:   LCR 0x8000\nstay:   B stay,UNC\n')
+    return str(linked_file(tmp_path, "storm", [source]))
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("time", "STORM", "--for", "0.1"),
+        ("record", "TAPE", "--image", "STORM", "--for", "0.1"),
+        ("inject", "STORM", "--from", "stay", "--interrupt", "INT1.7", "--after", "0.1"),
+    ],
+    ids=lambda words: words[0],
+)
+def test_what_it_does_to_the_chip_is_not_said_without_the_cause(storm, tmp_path, command):
+    """Trap after trap fills the stack, which grows into the registers until the board cannot go on."""
+    there = {"STORM": storm, "TAPE": str(tmp_path / "tape.npz")}
+    done = CliRunner().invoke(cli.app, ["image", *(there.get(word, word) for word in command)])
+    assert done.exit_code == 1
+    said = " ".join(f"{done.output} {done.exception}".split())
+    assert "the virtual board stopped: " in said
+    assert "Before that, the program came to an illegal instruction at 0x008000, L0, in cycle " in said
 
 
 def test_a_trace_ends_there(image):

@@ -23,7 +23,7 @@ from stillspin.board.pseudo_terminal import DEFAULT_RATE, PseudoTerminal
 from stillspin.board.show import Show
 from stillspin.called import called
 from stillspin.core_board import NativeBoard
-from stillspin.errors import InputError
+from stillspin.errors import CampaignError, InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.link.can_bus import DEFAULT_BITRATE
 
@@ -92,6 +92,10 @@ def serve(board: NativeBoard, options: Options, title: str) -> None:
             wall = time.monotonic() - began
         ran = desk.time
         remarks = options.remarks(board) if options.remarks else []
+    except CampaignError:
+        for words in options.remarks(board) if options.remarks else []:
+            print(words)
+        raise
     finally:
         if options.eeprom:
             eeprom_file.keep(board, options.eeprom)

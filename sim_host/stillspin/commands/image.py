@@ -106,7 +106,7 @@ def show(
         return
     entry = "" if program.entry is None else f", entry 0x{program.entry:06X}"
     print(f"{file.name}: {program.kind}, {counted(program.size, 'word')}{entry}")
-    for words in image.names.damage:
+    for words in image.remarks:
         print(f"{opened.WARNING}{words}")
     if _say(sections.read(file, program)):
         raise typer.Exit(ExitCode.SHORT)

@@ -99,11 +99,9 @@ def inject(
     vector = vectors.number(interrupt, "--interrupt")
     stretch = Stretch(first, last, vector, _watched(compare or [], image.names), most, within)
     board = opened.power_on(image, profile_name, motor, seed)
-    try:
+    with opened.closing(board, image):
         opened.advance(board, after)
         report = injection.inject(board, stretch)
-    finally:
-        board.close()
     print(
         f"{file.name}: {interrupt.upper()} before each of {counted(len(report.executed), 'instruction')} from "
         f"{image.names.place(first)} to {image.names.place(last)}"

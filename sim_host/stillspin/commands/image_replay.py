@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -121,12 +122,10 @@ def record(
             raise InputError(f"--run {only}: is one of a scenario; name that with --scenario")
         name = motor or resources.DEFAULT_MOTOR
         board = opened.power_on(image, profile_name, name, seed) if image else _firmware(profile_name, name, seed)
-        try:
+        with opened.closing(board, image) if image else closing(board):
             tape = tapes.play(board, _USUAL if seconds is None else seconds, octets)
             if image:
                 opened.say(board, image)
-        finally:
-            board.close()
     tapes.save(replace(tape, made_by=file.name if file else "firmware"), out)
     print(f"{out}: {counted(len(tape.samples), 'sample')}, {counted(len(tape.writes), 'write')} to the ePWM")
 
@@ -158,13 +157,11 @@ def replay(
     """
     image, tape = opened.read(file), tapes.load(tape_file)
     board = opened.power_on(image, profile_name, motor, seed)
-    try:
+    with opened.closing(board, image):
         tapes.play(board, tape.seconds, tape.octets, tape)
         difference = tapes.compare(tape, board)
         steps, writes = len(board.taped()[0]), len(board.taped()[1])
         opened.say(board, image)
-    finally:
-        board.close()
     if difference:
         _say(difference, image)
         raise typer.Exit(ExitCode.DIFFERS)

@@ -216,11 +216,9 @@ def time(
             raise typer.Exit(ExitCode.SHORT)
         return
     board = opened.power_on(image, profile_name, motor or resources.DEFAULT_MOTOR, seed)
-    try:
+    with opened.closing(board, image):
         opened.advance(board, after or 0.0)
         looked.begin(board)
         opened.advance(board, _USUAL if seconds is None else seconds)
         looked.say(board)
         opened.say(board, image)
-    finally:
-        board.close()

@@ -35,7 +35,7 @@ def trace(
     first = image.names.address(begin, "--from") if begin else None
     last = image.names.address(end, "--to") if end else None
     board = opened.power_on(image, profile_name, motor, seed)
-    try:
+    with opened.closing(board, image):
         opened.advance(board, after)
         if first is not None and not opened.run_to(board, [first], within):
             raise CampaignError(f"--from: {image.names.place(first)} was not reached within {within:g} s")
@@ -47,5 +47,3 @@ def trace(
         for line in tracing.lines(board, image.names):
             print(line)
         opened.say(board, image)
-    finally:
-        board.close()

@@ -10,9 +10,10 @@ from pathlib import Path
 
 from stillspin.counted import counted
 from stillspin.errors import InputError, did_you_mean
-from stillspin.flash import coff, coff_lines, debug_lines, elf, memories
+from stillspin.flash import coff, coff_lines, debug_lines, memories
 from stillspin.flash.debug_head import Strings
 from stillspin.flash.debug_lines import Lines, Source
+from stillspin.flash.sections import kind_of
 
 _LINES, _LINE_STRINGS, _STRINGS = ".debug_line", ".debug_line_str", ".debug_str"
 
@@ -70,7 +71,7 @@ class Names:
 def read(file: Path) -> Names:
     """Those of a file. What is damaged is left out and said: the words are there, and that is what runs."""
     data = file.read_bytes()
-    kind = elf if data.startswith(elf.MAGIC) else coff if data.startswith(coff.MAGIC) else None
+    kind = kind_of(data)
     if kind is None:
         return Names()
     damage = []

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType
 
 from stillspin.flash import coff, elf
 from stillspin.flash.memories import Extent
@@ -31,10 +32,26 @@ class Section:
             yield Extent(self.run, self.words, loaded=False)
 
 
+def kind_of(data: bytes) -> ModuleType | None:
+    """What reads that linked file, `elf` or `coff`; None of another format."""
+    return elf if data.startswith(elf.MAGIC) else coff if data.startswith(coff.MAGIC) else None
+
+
+def not_loaded(file: Path, program: Program, names: Iterable[str]) -> list[str]:
+    """Which of these sections a file has content of that it loads nowhere."""
+    data = file.read_bytes()
+    kind = kind_of(data)
+    loaded = {part.name for part in read(file, program) if part.load is not None}
+    try:
+        return [name for name in names if kind and name not in loaded and any(kind.section(data, name))]
+    except struct.error:
+        return []
+
+
 def read(file: Path, program: Program) -> list[Section]:
     """Those of a file in its order; of a format without sections, or with damaged ones, the blocks that it loads."""
     data = file.read_bytes()
-    kind = elf if data.startswith(elf.MAGIC) else coff if data.startswith(coff.MAGIC) else None
+    kind = kind_of(data)
     try:
         if kind:
             return [Section(*row) for row in kind.sections(data)]

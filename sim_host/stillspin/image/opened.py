@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,7 +21,7 @@ from stillspin.flash import names
 from stillspin.flash.files import read_program
 from stillspin.flash.names import Names
 from stillspin.flash.program import Program
-from stillspin.image import runaway
+from stillspin.image import remarks, runaway
 
 SLICE = 1_000_000
 """Ticks between two looks at a board that runs to a place."""
@@ -36,6 +37,8 @@ class Image:
     file: Path
     program: Program
     names: Names
+    remarks: Sequence[str] = ()
+    """What a user has to know of the file, in words."""
 
 
 def read(file: Path) -> Image:
@@ -44,7 +47,9 @@ def read(file: Path) -> Image:
     Raises:
         InputError: it cannot be read.
     """
-    return Image(file, read_program(file), names.read(file))
+    program = read_program(file)
+    there = names.read(file)
+    return Image(file, program, there, [*there.damage, *remarks.of(file, program)])
 
 
 def power_on(image: Image, profile_name: str, motor: str, seed: int) -> NativeBoard:
@@ -91,7 +96,7 @@ def _hook_flash_library(board: NativeBoard, there: Names) -> None:
 
 def warnings(board: NativeBoard, image: Image) -> list[str]:
     """What a user of an image has to know of a run: that it ran away or was reset, what it used that is not there."""
-    said = [f"{image.file.name}: {damage}" for damage in image.names.damage]
+    said = [f"{image.file.name}: {words}" for words in image.remarks]
     ran_away = runaway.said(board, image.names)
     said += [ran_away] if ran_away else []
     if there := board.statistics()["unmodelled_accesses"]:
@@ -109,6 +114,23 @@ def say(board: NativeBoard, image: Image) -> None:
     """Print them."""
     for words in warnings(board, image):
         print(words)
+
+
+@contextmanager
+def closing(board: NativeBoard, image: Image) -> Iterator[None]:
+    """A board that is switched off at the end.
+
+    Raises:
+        CampaignError: as the block does; where a program that ran away has stopped the board, with where and why.
+    """
+    try:
+        yield
+    except CampaignError as error:
+        if ran_away := runaway.said(board, image.names):
+            raise CampaignError(f"{error}. Before that, {ran_away}") from error
+        raise
+    finally:
+        board.close()
 
 
 def advance(board: NativeBoard, seconds: float) -> None:
