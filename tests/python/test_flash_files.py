@@ -125,7 +125,9 @@ def test_unsealed_piece_has_no_mark(file):
 
 WITHOUT_IDENTITY = [block for block in IMAGE if block.address != make.IDENTITY]
 BAD = {
-    "empty": (b"", "has an unknown format"),
+    "empty": (b"", "is empty; give an .out"),
+    "library": (b"!<arch>\n" + bytes(60), "is a library, not a program; give the .out that was linked with it"),
+    "s-records": (b"S00600004844521B\n", "has S-records; give Intel hex"),
     "words": (b"hello, this is no image\n" * 9, "has an unknown format"),
     "noise": (bytes(range(7, 256)) * 20, "has an unknown format"),
     "elf": (b"\x7fELF" + bytes(200), "ELF file"),

@@ -12,7 +12,13 @@ from stillspin.flash.layout import contains
 from stillspin.flash.program import Block, Program
 
 _FORMATS = "an .out file of cl2000 (COFF or ELF), Intel hex or a boot stream of hex2000"
-_LARGEST = 8 << 20
+_LARGEST = 64 << 20
+"""Octets: debug information of a large program takes far more than its words."""
+_OTHERS = {
+    b"!<arch>": "is a library, not a program; give the .out that was linked with it",
+    b"S0": "has S-records; give Intel hex (hex2000 -i)",
+}
+"""Beginnings of files that a linker's folder has, too."""
 
 
 def read_program(path: Path) -> Program:
@@ -40,6 +46,11 @@ def read_program(path: Path) -> Program:
         return boot_stream.from_text(data, name)
     if data.lstrip()[:1] == b":":
         return intel_hex.read(data, name)
+    if not data:
+        raise InputError(f"{name}: is empty; give {_FORMATS}")
+    for begin, words in _OTHERS.items():
+        if data.startswith(begin):
+            raise InputError(f"{name}: {words}")
     raise InputError(f"{name}: has an unknown format; give {_FORMATS}")
 
 
