@@ -52,9 +52,9 @@ def find(kind: str, name_or_path: str) -> Path:
     folders = [kind, *([_FURTHER[kind]] if kind in _FURTHER else [])]
     known = {name: directory(folder) / f"{name}.toml" for folder in folders for name in names(folder)}
     if name_or_path not in known:
-        raise InputError(
-            f"there is no {word} '{name_or_path}'{did_you_mean(name_or_path, known)}, or a path to a .toml file"
-        )
+        hint = did_you_mean(name_or_path, known)
+        path_too = " Or give a path" if hint.endswith("?") else ", or give a path"
+        raise InputError(f"there is no {word} '{name_or_path}'{hint}{path_too} to a .toml file")
     return known[name_or_path]
 
 
