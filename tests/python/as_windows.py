@@ -20,11 +20,12 @@ DRAWS = {"stillspin.report.explain_plot", "stillspin.report.plots", "stillspin.r
 as_ever = builtins.__import__
 
 
-def as_on_windows(name, names=None, local=None, chosen=(), level=0):
+def as_on_windows(name, *others, **named):
     """Import, but for the modules that Windows does not have."""
+    names = others[0] if others else named.get("globals")
     if name in ABSENT and (names or {}).get("__name__", "").startswith("stillspin"):
         raise ModuleNotFoundError(f"No module named {name!r}", name=name)
-    return as_ever(name, names, local, chosen, level)
+    return as_ever(name, *others, **named)
 
 
 for other in OTHERS:
