@@ -112,7 +112,9 @@ def test_records_of_older_sources_are_listed(
 
 def test_the_checks_that_take_long_end_with_the_figures_of_older_sources() -> None:
     """Where make runs it, a failure of the last line is one of `make verify`."""
-    said = subprocess.run(["make", "-n", "--no-print-directory", "verify"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    said = subprocess.run(
+        ["make", "-n", "--no-print-directory", "verify"], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout
     assert said.splitlines()[-1].endswith("toolchain/figures.py --list")
 
 
