@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import select
 
+from stillspin.board.advancing import advancing
 from stillspin.board.can_plug import CanPlug
 from stillspin.board.pseudo_terminal import PseudoTerminal
 from stillspin.core_board import NativeBoard
-from stillspin.errors import CampaignError
 
 Plug = PseudoTerminal | CanPlug
 
@@ -52,10 +52,8 @@ class Desk:
             CampaignError: the board cannot go on.
         """
         self._hand_over()
-        try:
+        with advancing():
             self.board.advance(round(min(seconds, SLICE) * TICKS_PER_SECOND))
-        except RuntimeError as error:
-            raise CampaignError(f"the virtual board stopped: {error}") from error
         self._hand_back()
 
     def answer(self) -> None:
@@ -72,10 +70,8 @@ class Desk:
         ready = self._wait() if self._rests else None
         octets_in = self.octets_in
         self._hand_over(ready)
-        try:
+        with advancing():
             heard = self.board.advance_until_heard(round(_ANSWER * TICKS_PER_SECOND))
-        except RuntimeError as error:
-            raise CampaignError(f"the virtual board stopped: {error}") from error
         self._rests = heard or self.octets_in == octets_in
         self._hand_back()
 
@@ -83,10 +79,8 @@ class Desk:
         """The same for a while in native code, where most of the time is."""
         self._hand_over()
         serial, can = self.port.listens_to, self.can.plain if self.can else None
-        try:
+        with advancing():
             served = self.board.serve_loop(-1 if serial is None else serial, -1 if can is None else can, _SERVE)
-        except RuntimeError as error:
-            raise CampaignError(f"the virtual board stopped: {error}") from error
         octets_in, octets_out, commands, left, can_left = served
         self.octets_in += octets_in
         self.octets_out += octets_out

@@ -48,25 +48,50 @@ def read(data: bytes, name: str) -> Program:
 
 
 def _read(data: bytes, name: str) -> Program:
-    _, count, _, _, _, optional, flags, target = _HEADER.unpack_from(data)
+    *_, optional, flags, target = _HEADER.unpack_from(data)
     if target != _TARGET:
         raise InputError(f"{name}: is a COFF file for another processor (0x{target:04X}), not for the C28x (0x009D)")
     if not flags & _EXECUTABLE or not optional:
         raise InputError(f"{name}: is a COFF object that has not been linked; give the .out file")
     entry = _OPTIONAL.unpack_from(data, _HEADER.size)[5]
     blocks = [
-        Block(load, struct.unpack_from(f"<{size}H", data, raw)) for load, size, raw in _loaded(data, count, optional)
+        Block(head.load_and_run[0], struct.unpack_from(f"<{head.size}H", data, head.raw))
+        for head in _heads(data)
+        if head.is_loaded
     ]
     return assemble(blocks, entry, "COFF", name)
 
 
-def _loaded(data: bytes, count: int, optional: int) -> Iterator[tuple[int, int, int]]:
-    """Of every section that is loaded: its address, its words, and where they are in the file."""
+class _Head(NamedTuple):
+    """A section's, with where in the file its content and its line numbers are."""
+
+    name: bytes
+    physical: int
+    virtual: int
+    size: int
+    raw: int
+    lines_at: int
+    lines: int
+    kind: int
+
+    @property
+    def is_loaded(self) -> bool:
+        """Whether a chip gets its words."""
+        return bool(self.size and self.raw) and not self.kind & _NOT_LOADED
+
+    @property
+    def load_and_run(self) -> tuple[int, int]:
+        """Where it is loaded and where it runs."""
+        return _load_and_run(self.physical, self.virtual)
+
+
+def _heads(data: bytes) -> Iterator[_Head]:
+    """All, in the file's order. Raises struct.error where it is cut short."""
+    count, optional = _HEADER.unpack_from(data)[1], _HEADER.unpack_from(data)[5]
     for index in range(count):
         at = _HEADER.size + optional + index * _SECTION.size
-        _, physical, virtual, size, raw, _, _, _, _, kind, _, _ = _SECTION.unpack_from(data, at)
-        if size and raw and not kind & _NOT_LOADED:
-            yield _load_and_run(physical, virtual)[0], size, raw
+        name, physical, virtual, size, raw, _, lines_at, _, lines, kind, _, _ = _SECTION.unpack_from(data, at)
+        yield _Head(name, physical, virtual, size, raw, lines_at, lines, kind)
 
 
 def sections(data: bytes) -> Iterator[tuple[str, int, int, int | None]]:
@@ -75,13 +100,10 @@ def sections(data: bytes) -> Iterator[tuple[str, int, int, int | None]]:
     Raises:
         struct.error: the file is cut short.
     """
-    count, optional = _HEADER.unpack_from(data)[1], _HEADER.unpack_from(data)[5]
-    for index in range(count):
-        at = _HEADER.size + optional + index * _SECTION.size
-        name, physical, virtual, size, raw, _, _, _, _, kind, _, _ = _SECTION.unpack_from(data, at)
-        if size and not kind & _NO_MEMORY:
-            load, run = _load_and_run(physical, virtual)
-            yield text(name, data) or "?", size, run, load if raw and not kind & _NOT_LOADED else None
+    for head in _heads(data):
+        if head.size and not head.kind & _NO_MEMORY:
+            load, run = head.load_and_run
+            yield text(head.name, data) or "?", head.size, run, load if head.is_loaded else None
 
 
 def _load_and_run(physical: int, virtual: int) -> tuple[int, int]:
@@ -101,12 +123,7 @@ def functions(data: bytes) -> dict[int, str]:
     Raises:
         struct.error: the file is cut short.
     """
-    count, optional = _HEADER.unpack_from(data)[1], _HEADER.unpack_from(data)[5]
-    code = {
-        index + 1
-        for index in range(count)
-        if _SECTION.unpack_from(data, _HEADER.size + optional + index * _SECTION.size)[9] & _TEXT
-    }
+    code = {number for number, head in enumerate(_heads(data), 1) if head.kind & _TEXT}
     found: dict[int, str] = {}
     for name, value, section in _symbols(data):
         if section in code and not name.startswith((".", "$")):
@@ -182,12 +199,9 @@ def line_tables(data: bytes) -> Iterator[tuple[int, int, bytes]]:
     Raises:
         struct.error: the file is cut short.
     """
-    count, optional = _HEADER.unpack_from(data)[1], _HEADER.unpack_from(data)[5]
-    for index in range(count):
-        at = _HEADER.size + optional + index * _SECTION.size
-        _, physical, virtual, size, _, _, where, _, entries, _, _, _ = _SECTION.unpack_from(data, at)
-        if where and entries:
-            yield _load_and_run(physical, virtual)[1], size, data[where : where + entries * _LINE_SIZE]
+    for head in _heads(data):
+        if head.lines_at and head.lines:
+            yield head.load_and_run[1], head.size, data[head.lines_at : head.lines_at + head.lines * _LINE_SIZE]
 
 
 def section(data: bytes, wanted: str) -> Iterator[bytes]:
@@ -198,15 +212,12 @@ def section(data: bytes, wanted: str) -> Iterator[bytes]:
     Raises:
         struct.error: the file is cut short.
     """
-    _, count, _, table, symbols, optional, _, _ = _HEADER.unpack_from(data)
-    strings = table + symbols * _SYMBOL.size
-    for index in range(count):
-        name, _, _, size, raw, *_ = _SECTION.unpack_from(data, _HEADER.size + optional + index * _SECTION.size)
-        if raw and _name(name, data, strings) == wanted:
-            packed = data[raw : raw + 2 * size]
+    for head in _heads(data):
+        if head.raw and text(head.name, data) == wanted:
+            packed = data[head.raw : head.raw + 2 * head.size]
             yield packed
             yield packed[::2]
-            yield data[raw : raw + size]
+            yield data[head.raw : head.raw + head.size]
 
 
 def _name(name: bytes, data: bytes, strings: int) -> str | None:
@@ -226,9 +237,9 @@ def patched(data: bytes, name: str, address: int, words: Sequence[int]) -> bytes
     Raises:
         InputError: no section has all of them.
     """
-    _, count, _, _, _, optional, _, _ = _HEADER.unpack_from(data)
-    for load, size, raw in _loaded(data, count, optional):
-        if load <= address and address + len(words) <= load + size:
-            at = raw + 2 * (address - load)
+    for head in _heads(data):
+        load = head.load_and_run[0]
+        if head.is_loaded and load <= address and address + len(words) <= load + head.size:
+            at = head.raw + 2 * (address - load)
             return data[:at] + struct.pack(f"<{len(words)}H", *words) + data[at + 2 * len(words) :]
     raise InputError(f"{name}: no section has 0x{address:06X} to 0x{address + len(words) - 1:06X}")

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from stillspin import core
 from stillspin.board import power
+from stillspin.board.advancing import advancing
 from stillspin.board.desk import TICKS_PER_SECOND
 from stillspin.board.image import blocks_of
 from stillspin.cases import profile
@@ -139,10 +140,8 @@ def advance(board: NativeBoard, seconds: float) -> None:
     Raises:
         CampaignError: the chip cannot go on.
     """
-    try:
+    with advancing():
         board.advance(round(seconds * TICKS_PER_SECOND))
-    except RuntimeError as error:
-        raise CampaignError(f"the virtual board stopped: {error}") from error
 
 
 def run_to(board: NativeBoard, places: Iterable[int], seconds: float) -> bool:
@@ -154,12 +153,11 @@ def run_to(board: NativeBoard, places: Iterable[int], seconds: float) -> bool:
     board.stop_at(list(places))
     end = board.now + round(seconds * TICKS_PER_SECOND)
     try:
-        while board.now < end:
-            board.advance(min(SLICE, end - board.now))
-            if board.halted:
-                return True
-    except RuntimeError as error:
-        raise CampaignError(f"the virtual board stopped: {error}") from error
+        with advancing():
+            while board.now < end:
+                board.advance(min(SLICE, end - board.now))
+                if board.halted:
+                    return True
     finally:
         board.stop_at([])
     return False

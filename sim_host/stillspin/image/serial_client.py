@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from stillspin.board.advancing import advancing
 from stillspin.board.desk import TICKS_PER_SECOND
 from stillspin.core_board import NativeBoard
 from stillspin.drive.protocol import CONTROL_PERIOD, REPEATABLE, Request
 from stillspin.drive.requester import accepted
-from stillspin.errors import CampaignError
 from stillspin.link.errors import NoAnswerError, RefusedError
 from stillspin.link.records import ANSWER, Record, to_wire
 from stillspin.link.splitter import Splitter
@@ -103,10 +103,8 @@ class SerialClient:
         return Record(kind, self._tag, body)
 
     def _advance(self, ticks: int) -> None:
-        try:
+        with advancing():
             self._board.advance(ticks)
-        except RuntimeError as error:
-            raise CampaignError(f"the virtual board stopped: {error}") from error
 
     def _take(self, octets: bytes) -> None:
         for item in self._splitter.feed(octets, self.period * CONTROL_PERIOD):
