@@ -69,7 +69,7 @@ bool signal_is_left_out(uint16_t place) { return rows_have(edition_signals_left_
 
 bool drive_signal_is_known(uint16_t place, uint16_t known) { return (table[place].needs & ~known) == 0; }
 
-signal_look_t* signal_look(uint16_t place) { return looks[(place < COUNT) ? place : 0u]; }
+signal_look_t* signal_look(uint16_t place) { return looks[place]; }
 
 int32_t drive_signal(uint16_t place, uint16_t known) { return (place < COUNT) ? looks[place](&drive, known) : 0; }
 

@@ -10,8 +10,7 @@ void drive_control_step(drive_t* d);
 
 /// Called at the end of that, at control interrupt level; NULL while nobody looks on, which costs least.
 extern void (*drive_onlooker)(void);
-/// How it looks at a signal (signal_list.h): found once, by its place; a place that does not exist gives the first
-/// one's.
+/// How it looks at a signal (signal_list.h): found once, by a place below signal_count().
 typedef int32_t signal_look_t(const volatile drive_t* d, uint16_t known);
 signal_look_t* signal_look(uint16_t place);
 

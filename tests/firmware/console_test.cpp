@@ -100,6 +100,20 @@ TEST_F(Console, DidYouMean) {
   EXPECT_EQ(command("get xyzzy"), "there is no parameter 'xyzzy'\r\n");
 }
 
+// A name that another edition has is no mistake to be put right.
+TEST_F(Console, WhatTheEditionHasNotIsNamedWithIt) {
+  const struct {
+    const char *name, *feature;
+  } names[] = {{"flux_low", "sources/flux"},   {"load_angle", "sources/flux"},      {"can_node", "can"},
+               {"wiring", "start/flying"},     {"if_speed", "start/if_start"},      {"speed_limit", "drive"},
+               {"zvv_terms", "sources/paper"}, {"encoder_trim", "sources/encoder"}, {"speed", "drive"}};
+  for (const auto& n : names) {
+    const std::string left_out =
+        std::string("'") + n.name + "' is not in this edition of the firmware, " + edition_name + "\r\n";
+    EXPECT_EQ(command(std::string("get ") + n.name) == left_out, !missing_of({n.feature}).empty()) << n.name << text;
+  }
+}
+
 TEST(Suggest, OneEditOrAPart) {
   const auto near = [](const char* name, const std::string& text) {
     const Octets o(text.begin(), text.end());

@@ -199,6 +199,32 @@ TEST_F(ParameterRules, AMachineBeyondTheFormatsIsRefused) {
   keeps();
 }
 
+// The sources have the same numbers in every edition.
+TEST_F(ParameterRules, ASourceThatIsNotInTheEditionIsRefused) {
+  const parameters_t p = parameters;
+  for (std::int32_t source = POSITION_ENCODER; source <= POSITION_FLUX_ACTIVE; ++source) {
+    parameters = p;
+    parameters.position_source = source;
+    if (has_source(source)) {
+      EXPECT_EQ(text_of(parameter_conflict()).find("edition"), std::string::npos) << source;
+    } else {
+      refuses("position_source is not in this edition");
+    }
+  }
+}
+
+// The drive takes no such machine over, and says why; the one that it had stays.
+TEST_F(ParameterRules, AMachineThatIsRefusedIsNotLoaded) {
+  const std::int32_t had = inside::config().values.link_minimum;
+  parameters.inductance_d = parameters.inductance_q = raw(0.05, 20);
+  parameters.link_minimum = had - 65536;
+  inside::request().reload = true;
+  background_step(&drive);
+  EXPECT_FALSE(inside::config_valid());
+  EXPECT_NE(text_of(inside::conflict()).find("too extreme"), std::string::npos);
+  EXPECT_EQ(inside::config().values.link_minimum, had);
+}
+
 // With twice the sensors' full scale along d the reluctance adds 51 N m/A to a torque constant at most.
 TEST_F(ParameterRules, AReluctanceBeyondTheTorquesFormatsIsRefused) {
   parameters.inductance_d = raw(60.0, 20);

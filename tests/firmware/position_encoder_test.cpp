@@ -76,6 +76,20 @@ TEST_F(Sources, BesideTheEncoderTheDeviationIsThatOfTheFrameInUse) {
   EXPECT_NE(inside::avv().regression.information, 1) << "AVV looks on";
 }
 
+// What has been seen while somebody else had the shaft is worth more than the angle in use.
+TEST_F(Sources, AnEncoderThatGoesOnKeepsItsAngle) {
+  run_with(POSITION_ENCODER);
+  const std::uint32_t offset = encoder.offset_bam;
+  board.encoder = 100;
+  inside::selected().angle_bam = kThere;
+  position_keep(&drive);
+  EXPECT_EQ(encoder.offset_bam, offset);
+  EXPECT_EQ(encoder.observer.angle_bam, kHere);
+  position_preset(&drive, kThere, 0);
+  EXPECT_NE(encoder.offset_bam, offset);
+  EXPECT_EQ(encoder.observer.angle_bam, kThere);
+}
+
 // Beside the encoder AVV looks on in its own frame, or a stator flux in its place.
 TEST_F(Sources, BesideTheEncoderSomebodyLooksOn) {
   NEEDS("sources/flux");

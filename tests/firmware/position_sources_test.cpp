@@ -344,6 +344,32 @@ TEST_F(Sources, ByTurnsEachHasItsOwnWindows) {
   }
 }
 
+// From three quarters of the blend's lower end on they go by turns, and AVV is no longer led by ZVV.
+TEST_F(Sources, BelowTheBlendAvvIsLedUntilTheTurnsBegin) {
+  NEEDS("sources/paper");
+  for (const int rpm : {44, 46}) {
+    run_with(POSITION_PAPER);
+    blend(BLEND_LOW, 1.0);
+    inside::selected().speed_bpp = bpp_of(rpm);
+    inside::avv().observer.angle_bam = kThere;
+    see(1);
+    estimate();
+    const std::uint32_t led = rpm < 45 ? paper_zvv.angle_bam : kThere;
+    EXPECT_NEAR(rad(inside::avv().observer.angle_bam - led), 0.0, 1e-3) << rpm;
+  }
+}
+
+// What has been seen while somebody else had the shaft is worth more than the angle in use.
+TEST_F(Sources, ThePapersSourceThatGoesOnKeepsItsAngle) {
+  NEEDS("sources/paper");
+  run_with(POSITION_PAPER);
+  inside::selected().angle_bam = kThere;
+  position_keep(&drive);
+  EXPECT_EQ(paper_zvv.angle_bam, kHere);
+  position_preset(&drive, kThere, 0);
+  EXPECT_EQ(paper_zvv.angle_bam, kThere);
+}
+
 // With pulses that the parameter chooses no period is made for ZVV alone.
 TEST_F(Sources, WithoutTurnsZvvLooksAtWhatThereIs) {
   NEEDS("sources/paper");

@@ -8,6 +8,7 @@
 extern "C" {
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
+#include "firmware/sources/encoder/encoder.h"
 }
 
 namespace {
@@ -137,6 +138,26 @@ TEST_F(ProtectionLimits, AvvBesideTheEncoderIsNoDoubtOfTheAngle) {
     synchronism_reset(&inside::synchronism());
     (void)judged();
     EXPECT_EQ(inside::synchronism().debounce > 0, source == POSITION_OBSERVER_AVV);
+  }
+}
+
+// In the first turns a doubt of the angle is the encoder's that counts the other way round; no other source can.
+TEST_F(ProtectionLimits, InTheFirstTurnsAnEncoderMayBeReversed) {
+  for (const std::int32_t source : {POSITION_ENCODER, POSITION_OBSERVER}) {
+    for (const bool first_turns : {true, false}) {
+      SetUp();
+      use_source(source);
+      polarity_watch.open = first_turns;
+      inside::schedule().judges = true;
+      inside::schedule().slot = SCHEDULE_SLOTS;
+      inside::selected().speed_bpp = bpp_of(3 * 3300);
+      inside::diverged_periods() = 60000;
+      encoder.aligned_bam = 0;
+      encoder.observer.angle_bam = 0x1000000u;
+      inside::high_speed_estimate().angle_bam = 0u - 0x1000000u;
+      const bool reversed = first_turns && source == POSITION_ENCODER;
+      EXPECT_EQ(judged(), reversed ? FAULT_ENCODER : FAULT_DIVERGENCE) << source << first_turns;
+    }
   }
 }
 

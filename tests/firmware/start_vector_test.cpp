@@ -39,6 +39,39 @@ TEST_F(StartByVector, AVectorBeginsFromRest) {
   }
 }
 
+// Gates that the comparator does not let on are a fault, and nothing begins.
+TEST_F(StartByVector, WithoutGatesNoVectorBegins) {
+  start_power(&drive, false);
+  board.pin_low = true;
+  if_ramp_phase.begin(&drive);
+  EXPECT_EQ(inside::fault(), FAULT_OVER_CURRENT);
+  EXPECT_NE(inside::start_found().phase, START_IF_RAMP);
+  EXPECT_FALSE(inside::loop_is_closed());
+  EXPECT_FALSE(inside::flags().open_loop);
+}
+
+// Until the vector has reached its speed a source that would have the shaft alone knows no better than the vector; one
+// that has something of its own is led along.
+TEST_F(StartByVector, ASourceThatRestsSeesTheVector) {
+  for (const std::int32_t source : {POSITION_OBSERVER, POSITION_FLUX_CONV}) {
+    if (!has_source(source)) continue;
+    SetUp();
+    use_source(source);
+    if_ramp_phase.begin(&drive);
+    position_bumpless_transfer(&drive);
+    inside::selected() = {bam(0.3), bpp(60.0), 0, 32767};
+    flux_observer.observer.angle_bam = inside::observer().angle_bam = bam(2.0);
+    estimator_input_t in = {};
+    in.model = &inside::model();
+    if_ramp_phase.estimate(&drive, &in);
+    EXPECT_EQ(inside::seen().angle_bam, bam(0.3)) << source;
+    EXPECT_EQ(inside::seen().speed_bpp, bpp(60.0)) << source;
+    EXPECT_EQ(inside::observer().angle_bam, bam(2.0)) << "it is not asked";
+    EXPECT_EQ(flux_observer.observer.angle_bam == bam(0.3), source == POSITION_FLUX_CONV) << source;
+    EXPECT_EQ(inside::selected().angle_bam, if_ramp.angle_bam + static_cast<std::uint32_t>(if_ramp.speed_bpp));
+  }
+}
+
 // What the vector has turned is taken over as the source sees it: angle, speed and the current in its frame; the
 // controllers begin anew in that frame, and nobody holds the shaft.
 TEST_F(StartByVector, TheSourceTakesOverWhereTheVectorIs) {
