@@ -5,7 +5,7 @@ Usage: .venv/bin/python toolchain/c28x_iqmath.py FOLDER [Q]     (after `make bui
 
 FOLDER has the library's sources, IQN*.asm (C2000Ware, libraries/math/IQmath/c28/source), which are no part of this
 project. The head of each says its cycles, from the call to the return, for code, tables and stack in blocks of RAM of
-their own, and for tables in a memory with one wait. Tables are zeros here: how long a routine takes hangs on no value
+their own, and for tables in a memory with one wait. Tables are zeros here: how long a routine takes depends on no value
 but a denominator of zero. Exit status 0 when every routine is within three cycles, 1 when one is not, 2 for a
 folder without routines.
 """

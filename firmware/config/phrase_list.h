@@ -1,6 +1,6 @@
 // Why parameters do not fit together: PHRASE(name, text), see text/phrase_list.h.
 
-PHRASE(position_source_is_not_in_this_edition, "position_source is not in this edition of the firmware")
+PHRASE(position_source_is_not_in_this_edition, "this position_source is not in this edition of the firmware")
 PHRASE(inductance_q_must_be_at_least_inductance, "inductance_q must be at least inductance_d")
 PHRASE(blend_high_must_be_above_blend_low, "blend_high must be above blend_low")
 PHRASE(flux_high_must_be_above_flux_low, "flux_high must be above flux_low")

@@ -72,7 +72,7 @@ AfterOption = Annotated[
         "--after",
         parser=number("--after", 0, unit="s"),
         metavar="SECONDS",
-        help="Let the image run so long from power-on first.",
+        help="Let the image run for this long from power-on first.",
     ),
 ]
 ProfileOption = Annotated[

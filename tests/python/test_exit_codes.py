@@ -1,6 +1,7 @@
 """Every command ends with the status that the book's table says: one table, and no traceback for what users cause."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -74,6 +75,14 @@ def test_the_book_has_every_status():
         assert f"| {code:d} | {code.title} | {code.meaning} |" in text
     assert {int(code) for code in ExitCode} == {0, 1, 2, 3, 4, 130, 141}
     assert set(BAD) < set(ALL)
+
+
+def test_the_book_says_of_every_command_how_it_may_end():
+    table = BOOK.read_text(encoding="utf-8").partition("What that means for each of them")[2].split("\n\n")[1]
+    rows = [row.split(" | ")[0] for row in table.splitlines()[2:]]
+    named = [name for row in rows for name in re.findall(r"`([^`]+)`", row)]
+    groups = {name.rpartition(" ")[0] for name in ALL}
+    assert sorted(named) == sorted(set(ALL) - groups), "each in one row"
 
 
 @pytest.mark.parametrize("name", ALL)

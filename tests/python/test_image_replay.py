@@ -94,6 +94,11 @@ def test_what_is_missing_is_a_difference(control, recorded):
     assert compared(control, 1, silent).found is None
 
 
+def test_a_program_that_takes_no_sample_differs(tmp_path, recorded):
+    difference = compared(linked_file(tmp_path, "echo"), 1, recorded)
+    assert (difference.index, difference.expected, difference.found) == (0, recorded.writes[0], None)
+
+
 def test_the_firmware_is_recorded_as_well():
     native = core.load()
     chosen = profile.load("bench", core.plant_schema(native), core.parameters(native), "A")

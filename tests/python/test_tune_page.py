@@ -161,6 +161,8 @@ def test_another_site_in_the_same_browser_gets_nothing(tuned, server):
 
 def test_a_parameter_leads_to_what_it_does_and_the_guide_is_a_click_away(tuned):
     tuned.click("[data-tab=parameters]")
+    for link in ("#guide", ".parameter[data-name=speed_ramp] .name a"):
+        assert "a motor that runs from here stops" in tuned.locator(link).get_attribute("title")
     with tuned.expect_popup() as opened:
         tuned.click(".parameter[data-name=speed_ramp] .name a")
     book = opened.value

@@ -78,7 +78,10 @@ def campaign(
     may_fail: Annotated[
         int,
         typer.Option(
-            "--may-fail", metavar="N", parser=whole("--may-fail", 0, _MOST), help="So many that fail are no failure."
+            "--may-fail",
+            metavar="N",
+            parser=whole("--may-fail", 0, _MOST),
+            help="How many cases may fail before the exit status is 1.",
         ),
     ] = 0,
     may_refuse: Annotated[
@@ -87,7 +90,7 @@ def campaign(
             "--may-refuse",
             metavar="PERCENT",
             parser=number("--may-refuse", 0, 100, "%"),
-            help="How many cases without a fault the drive may refuse.",
+            help="What share of the cases without a fault the drive may refuse before the exit status is 1.",
         ),
     ] = 5.0,
     smallest: Annotated[
@@ -96,20 +99,20 @@ def campaign(
             "--shrink",
             metavar="N",
             parser=whole("--shrink", 0, _MOST),
-            help="Of so many that fail, find the smallest departure that still does, as a scenario file.",
+            help="For so many cases that fail: find what is enough to make each fail; write it as a scenario file.",
         ),
     ] = 3,
     file: Annotated[
         Path | None, typer.Option("--json", metavar="FILE", help="Keep each case in this file as a line of JSON.")
     ] = None,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with FILE: leave out what it has of this campaign.")
+        bool, typer.Option("--resume", help="Go on with the FILE of --json: leave out the cases that it has.")
     ] = False,
     common: CampaignOptions,
     commission_first: CommissionOption = True,
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the results.")] = Path("results-campaign"),
 ) -> None:
-    """Run drawn units of motors through one duty, judge the true shaft, and say what share of them fails.
+    """Run motors with values drawn at random through one duty, judge the true shaft, and say what share fails.
 
     Each case is drawn by the seed and its number alone. The drive is commissioned once on the nominal unit. A motor of
     the catalogue has the profile of its name, where --profile names none. Exit status 1 when more cases fail than

@@ -22,7 +22,7 @@ from stillspin.options import ImageArgument
 
 app = typer.Typer(
     cls=OneLineErrors,
-    help="Linked images: show one; time, trace and interrupt one on the virtual board; assemble one.",
+    help="Linked images: show one; time, trace, interrupt, record and replay one on the virtual board; assemble one.",
     rich_markup_mode=None,
 )
 

@@ -60,12 +60,17 @@ def _say(report: Report, image: opened.Image) -> None:
 def inject(
     *,
     file: ImageArgument,
-    interrupt: Annotated[str, typer.Option("--interrupt", metavar="INTx.y", help="Which, by its line in the PIE.")],
-    begin: Annotated[str, typer.Option("--from", metavar="PLACE", help="A name, FILE:LINE or an address.")],
+    interrupt: Annotated[
+        str,
+        typer.Option("--interrupt", metavar="INTx.y", help="Which interrupt, by its line in the PIE, such as INT1.7."),
+    ],
+    begin: Annotated[
+        str, typer.Option("--from", metavar="PLACE", help="Where the stretch begins: a name, FILE:LINE or an address.")
+    ],
     end: Annotated[
         str,
         typer.Option(
-            "--to", metavar="PLACE", help="Where the stretch ends; without it, at its beginning, once around a loop."
+            "--to", metavar="PLACE", help="Where it ends [default: where it begins, which is once around a loop]."
         ),
     ] = "",
     compare: Annotated[
@@ -81,17 +86,20 @@ def inject(
             "--within",
             parser=number("--within", 1e-6, unit="s"),
             metavar="SECONDS",
-            help="It begins, and ends, by then.",
+            help="Give up when the stretch has not begun, or not ended, within this time.",
         ),
     ] = 0.1,
-    most: Annotated[int, typer.Option("--most", min=1, max=100_000, help="Give up after as many instructions.")] = 2000,
+    most: Annotated[
+        int, typer.Option("--most", min=1, max=100_000, help="Give up when the stretch has more instructions.")
+    ] = 2000,
     profile_name: ProfileOption = "bench",
     motor: MotorOption = resources.DEFAULT_MOTOR,
     seed: SeedOption = 1,
 ) -> None:
     """Ask for an interrupt before each instruction executed in a stretch of code, and compare what it leaves behind.
 
-    Exit status 1 when some place gives another result than an interrupt before the stretch and one behind it.
+    Exit status 1 when at some place it leaves neither what an interrupt before the stretch leaves nor what one behind
+    it does, or when it does not put a register back.
     """
     image = opened.read(file)
     first = image.names.address(begin, "--from")

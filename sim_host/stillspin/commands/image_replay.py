@@ -83,11 +83,17 @@ def record(
     out: Annotated[Path, typer.Argument(metavar="TAPE", help="Where to write what was recorded.")],
     file: Annotated[
         Path | None,
-        typer.Option("--image", metavar="FILE", help="Of this image instead of the firmware for this computer."),
+        typer.Option(
+            "--image", metavar="FILE", help="Record this image instead of the firmware that is built for this computer."
+        ),
     ] = None,
     scenario: Annotated[
         str | None,
-        typer.Option("--scenario", metavar="ID", help="A run of this scenario, told over the serial port."),
+        typer.Option(
+            "--scenario",
+            metavar="ID",
+            help="Record a run of this scenario; the drive is told what to do over its serial port.",
+        ),
     ] = None,
     only: Annotated[
         str | None, typer.Option("--run", metavar="NAME", help="Which of its runs [default: the first].")
@@ -103,7 +109,9 @@ def record(
     ] = None,
     send: Annotated[
         list[str] | None,
-        typer.Option("--send", metavar="SECONDS:TEXT", help="A line for the serial port at a time. Repeatable."),
+        typer.Option(
+            "--send", metavar="SECONDS:TEXT", help="Send this line to the serial port at that time. Repeatable."
+        ),
     ] = None,
     profile_name: ProfileOption = "bench",
     motor: OtherMotorOption = None,
@@ -151,7 +159,7 @@ def replay(
     motor: MotorOption = resources.DEFAULT_MOTOR,
     seed: SeedOption = 1,
 ) -> None:
-    """Give an image what another run was told; its writes to the ePWM have to be the same, bit for bit.
+    """Give an image the inputs of a recorded run, and compare what it writes to the ePWM, bit for bit.
 
     Exit status 4 when one differs: the first is named by step, register and source line.
     """

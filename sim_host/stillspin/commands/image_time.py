@@ -177,7 +177,10 @@ def time(
     file: ImageArgument,
     scenarios: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[SCENARIO]...", help="What it runs, told over its serial port [default: nothing]."),
+        typer.Argument(
+            metavar="[SCENARIO]...",
+            help="Scenarios to run; the image is told what to do over its serial port [default: none].",
+        ),
     ] = None,
     seconds: Annotated[
         float | None,
@@ -185,7 +188,7 @@ def time(
             "--for",
             parser=number("--for", 0.0001, unit="s"),
             metavar="SECONDS",
-            help="How long to look [default: 0.1, or a scenario's length].",
+            help="How long to look; a scenario says that itself [default: 0.1].",
         ),
     ] = None,
     after: Annotated[
@@ -194,11 +197,11 @@ def time(
             "--after",
             parser=number("--after", 0, unit="s"),
             metavar="SECONDS",
-            help="From when on, after power-on [default: 0, or the end of the start procedure].",
+            help="From when on, after power-on; in a scenario it is the end of the start procedure [default: 0].",
         ),
     ] = None,
-    most: Annotated[int, typer.Option("--functions", min=1, max=10_000, help="List as many functions.")] = 20,
-    lines: Annotated[int, typer.Option("--lines", min=0, max=100_000, help="List as many source lines.")] = 0,
+    most: Annotated[int, typer.Option("--functions", min=1, max=10_000, help="How many functions to list.")] = 20,
+    lines: Annotated[int, typer.Option("--lines", min=0, max=100_000, help="How many source lines to list.")] = 0,
     profile_name: ProfileOption = "bench",
     motor: OtherMotorOption = None,
     seed: SeedOption = 1,

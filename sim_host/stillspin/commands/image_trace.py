@@ -16,14 +16,22 @@ from stillspin.options import AfterOption, ImageArgument, MotorOption, ProfileOp
 def trace(
     *,
     file: ImageArgument,
-    begin: Annotated[str, typer.Option("--from", metavar="PLACE", help="A name, FILE:LINE or an address.")] = "",
-    end: Annotated[str, typer.Option("--to", metavar="PLACE", help="The last instructions before this place.")] = "",
+    begin: Annotated[
+        str,
+        typer.Option("--from", metavar="PLACE", help="Begin here: a name, FILE:LINE or an address [default: at once]."),
+    ] = "",
+    end: Annotated[
+        str, typer.Option("--to", metavar="PLACE", help="List the last instructions before this place instead.")
+    ] = "",
     count: Annotated[int, typer.Option("--instructions", min=1, max=100_000, help="How many to list.")] = 40,
     after: AfterOption = 0.0,
     within: Annotated[
         float,
         typer.Option(
-            "--within", parser=number("--within", 1e-6, unit="s"), metavar="SECONDS", help="Give up after so long."
+            "--within",
+            parser=number("--within", 1e-6, unit="s"),
+            metavar="SECONDS",
+            help="Give up when a place is not reached within this time.",
         ),
     ] = 0.1,
     profile_name: ProfileOption = "bench",

@@ -96,7 +96,10 @@ def round_trips(
     may_lose: Annotated[
         int,
         typer.Option(
-            "--may-lose", metavar="N", parser=whole("--may-lose", 0, 10000), help="So many lost are no failure."
+            "--may-lose",
+            metavar="N",
+            parser=whole("--may-lose", 0, 10000),
+            help="How many trips may be lost before the exit status is 1.",
         ),
     ] = 0,
     common: CampaignOptions,

@@ -167,7 +167,7 @@ class Table:
 
     def _missing(self, kind: str, name: str, known: Iterable[str]) -> StillspinError:
         if self.edition not in ("", core.LAB) and name in core.known_names():
-            words = f"{kind} '{name}' is not in this edition of the firmware, {self.edition}"
+            words = f"{kind} '{name}' is not in this edition of the firmware, {self.edition}; {core.LAB} has it"
             return RefusedError(words, StatusCode.EDITION)
         return InputError(f"no {kind} '{name}'{did_you_mean(name, known)}")
 

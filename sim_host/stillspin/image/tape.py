@@ -79,7 +79,8 @@ def play(board: NativeBoard, seconds: float, octets: Sequence[Octets], given: Ta
         board: of an image or the firmware.
         seconds: how long.
         octets: for its serial port.
-        given: what it is told in the place of what is there; its codes as long as there are some.
+        given: what it is told in the place of what is there; its codes as long as there are some. A board that has
+            not come to the last of them has as long again, since its start may take longer than the recorded one.
 
     Raises:
         CampaignError: the chip cannot go on.
@@ -93,6 +94,8 @@ def play(board: NativeBoard, seconds: float, octets: Sequence[Octets], given: Ta
         at = when
         board.serial_write(bytes.fromhex(text))
     opened.advance(board, seconds - at)
+    if given and len(board.taped()[0]) < len(given.samples):
+        opened.advance(board, seconds)
     samples, writes, inputs = board.taped()
     return Tape(seconds, samples, [write[:3] for write in writes], list(octets), "", inputs)
 
@@ -125,12 +128,12 @@ def of_run(native: NativeCore, job: Job, progress: Progress | None) -> tuple[Tap
 def compare(tape: Tape, board: NativeBoard) -> Difference | None:
     """Hold what a board has written, which was given the tape, against the tape.
 
-    What came behind the last sample of the shorter run is not compared.
+    What came behind the tape's last sample is not compared. Where the board has taken fewer, the writes of the others
+    are missing.
     """
-    samples, writes, _ = board.taped()
-    end = min(len(samples), len(tape.samples))
+    end = len(tape.samples)
     expected = [write for write in tape.writes if write[0] < end]
-    found = [write for write in writes if write[0] < end]
+    found = [write for write in board.taped()[1] if write[0] < end]
     for index, (one, other) in enumerate(zip_longest(expected, found)):
         if other is None or one != other[:3]:
             return Difference(index, one, other[:3] if other else None, other[3] if other else 0)

@@ -46,7 +46,8 @@ export class Parameters {
     const back = make("button", { class: "back", title: `Default: ${initial.toFixed(decimals)} ${unit}` }, "↺");
     back.setAttribute("aria-label", `${name} to its default`);
     if (!always) back.setAttribute("data-stopped", "");
-    const guide = make("a", { href: `/book/parameters.md#${name}`, target: "stillspin-book", title: "What one sees when it changes" }, name);
+    const title = "What one sees when it changes. Opens another tab: a motor that runs from here stops";
+    const guide = make("a", { href: `/book/parameters.md#${name}`, target: "stillspin-book", title }, name);
     const element = make(
       "div",
       { class: "parameter", "data-name": name },
