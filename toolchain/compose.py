@@ -258,8 +258,8 @@ def needless_texts(edition: Edition, root: Path) -> set[str]:
     numbers = {str(number) for feature in gone for number in feature.parameters}
     rows = pack_text.rows(pack_text.whole(root, PARAMETERS), "PARAMETER")
     parameters = [row[1] for row in rows if row[0] in numbers]
-    found = {f"TEXT_PARAMETER_{what}{name}" for name in parameters for what in ("", "UNIT_")}
-    found |= {f"TEXT_SIGNAL_{what}{name}" for feature in gone for name in feature.signals for what in ("", "UNIT_")}
+    found = {f"TEXT_PARAMETER_{name}" for name in parameters}
+    found |= {f"TEXT_SIGNAL_{name}" for feature in gone for name in feature.signals}
     found |= {f"TEXT_{what}_{number}" for feature in gone for number in feature.faults for what in ("FAULT", "REMEDY")}
     commands = [COMMANDS[place] for feature in gone for place, _ in feature.places("commands")]
     found |= {f"TEXT_COMMAND_{what}{name}" for name in commands for what in ("", "ARGUMENTS_")}

@@ -4,6 +4,7 @@
 
 #include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/dictionary/units.h"
 #include "firmware/mode/mode.h"
 #include "firmware/text/catalogue.h"
 #include "firmware/text/packed_text.h"
@@ -74,15 +75,19 @@ answer_status_t action_speed(int32_t rpm_q16, octet_writer_t* why) {
   return ANSWER_RANGE;
 }
 
+void put_number(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw) {
+  put_quantity(w, raw, parameter->unit, parameter->q, parameter->decimals);
+}
+
 void put_value(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw) {
-  put_fixed(w, raw, parameter->q, parameter->decimals);
+  put_number(w, parameter, raw);
   if (packed_is_empty(parameter_unit(parameter))) return;
   put_u8(w, ' ');
   put_packed(w, parameter_unit(parameter));
 }
 
 void put_range(octet_writer_t* w, const parameter_info_t* parameter) {
-  put_fixed(w, parameter_minimum(parameter), parameter->q, parameter->decimals);
+  put_number(w, parameter, parameter_minimum(parameter));
   put_packed(w, SAY_to);
   put_value(w, parameter, parameter_maximum(parameter));
   put_packed(w, SAY_nothing_changed);
@@ -118,7 +123,7 @@ void put_conflict(octet_writer_t* w, packed_text_t conflict) {
 static answer_status_t refuse_range(const parameter_info_t* p, int32_t raw, octet_writer_t* why) {
   put_packed(why, parameter_name(p));
   put_packed(why, SAY_is);
-  put_fixed(why, raw, p->q, (uint16_t)(p->decimals + 1u));
+  put_quantity(why, raw, p->unit, p->q, (uint16_t)(p->decimals + 1u));
   put_packed(why, SAY_is_outside_of);
   put_range(why, p);
   return ANSWER_RANGE;

@@ -54,7 +54,9 @@ void put_speed_limit(octet_writer_t* w, packed_text_t why);
 /// A rule that does not hold, with what the parameters that it names are now.
 void put_conflict(octet_writer_t* w, packed_text_t conflict);
 
-/// A value with its unit, as the table has its decimals.
+/// A value in user's units, as the table has its decimals.
+void put_number(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw);
+/// The same with its unit.
 void put_value(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw);
 
 #if defined(__cplusplus)

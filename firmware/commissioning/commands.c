@@ -35,7 +35,7 @@ static bool list_results(uint16_t step) {
   octet_writer_t* const w = line_begin();
   put_packed(w, parameter_name(p));
   put_spaces_to(w, 22);
-  put_fixed(w, r.before, p->q, p->decimals);
+  put_number(w, p, r.before);
   put_packed(w, SAY_becomes);
   put_value(w, p, r.value);
   put_spaces_to(w, 50);

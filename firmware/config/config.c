@@ -125,7 +125,7 @@ static bool load_control(drive_config_t* c) {
   c->speed.friction_q24 = p->friction;
   c->speed.inertia_q24 = p->inertia;
   c->speed.step_periods = DRIVE_PERIODS_PER_MS;
-  c->speed.alpha_q8 = p->speed_alpha;
+  c->speed.alpha_q8 = q_shr_round(p->speed_alpha, 6);
   c->speed.trajectory_ms_q8 = p->speed_trajectory;
   c->speed.pi_bandwidth_q8 = p->speed_pi_bandwidth;
   c->speed.pi_damping_q12 = p->speed_pi_damping;

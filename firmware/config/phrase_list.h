@@ -13,6 +13,7 @@ PHRASE(dead_time_turn_on_delay_must_not, "dead_time + turn_on_delay must not exc
 PHRASE(trip_current_must_be_at_least_current, "trip_current must be at least current_limit")
 PHRASE(trip_current_must_be_below_97_of, "trip_current must be below 97 % of current_full_scale")
 PHRASE(link_maximum_must_be_below_97_of, "link_maximum must be below 97 % of link_full_scale")
+PHRASE(speed_limit_pole_pairs_must_not_exceed, "speed_limit x pole_pairs must not exceed 60000 rpm, 1 kHz")
 PHRASE(speed_limit_is_too_high_with_the,
        "speed_limit is too high: with the gates off the EMF would charge the link beyond link_maximum")
 PHRASE(weakening_limit_must_not_exceed_current_limi, "weakening_limit must not exceed current_limit")

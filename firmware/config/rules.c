@@ -14,6 +14,8 @@
 #define SAMPLING_MIN_Q16 294912L    // 4.5 us: two bursts and the shortest useful time between them
 #define EDGE_SHIFT_MAX_Q16 157286L  // 2.4 us: the room that the modulator keeps before the first edge
 
+#define ELECTRICAL_MAX_RPM_Q8 15360000L  // 1 kHz: ten control interrupts to a turn
+
 // Peak line-to-line EMF at the speed limit, V Q16: sqrt(3) lambda w.
 static int32_t largest_emf_q16(const parameters_t* p) {
   const int32_t volts_q16 = qc_mul_sat(p->magnet_flux, p->speed_limit * p->pole_pairs, 20);
@@ -46,6 +48,7 @@ static packed_text_t broken_rule(void) {
   if (p->trip_current < p->current_limit) return SAY_trip_current_must_be_at_least_current;
   if (p->trip_current > p->current_full_scale / 100 * 97) return SAY_trip_current_must_be_below_97_of;
   if (p->link_maximum > p->link_full_scale / 100 * 97) return SAY_link_maximum_must_be_below_97_of;
+  if (p->speed_limit * p->pole_pairs > ELECTRICAL_MAX_RPM_Q8) return SAY_speed_limit_pole_pairs_must_not_exceed;
   // A fault switches the gates off at any speed; the diodes then charge the link up to the EMF.
   if (largest_emf_q16(p) > p->link_maximum) return SAY_speed_limit_is_too_high_with_the;
   if (p->weakening_limit > p->current_limit) return SAY_weakening_limit_must_not_exceed_current_limi;

@@ -112,8 +112,8 @@ static uint16_t read_speed(const words_of_line_t* a, decimal_t* number) {
   const uint16_t length = text_number(value->text, value->count, number);
   const uint16_t left = (uint16_t)(value->count - length);
   if (length == 0u || a->count > 2u) return 0;
-  if (left > 0u && (a->count > 1u || !packed_equals(TEXT_SIGNAL_UNIT_speed, &value->text[length], left))) return 0;
-  return (a->count < 2u || word_is(a, 1, TEXT_SIGNAL_UNIT_speed)) ? length : 0u;
+  if (left > 0u && (a->count > 1u || !packed_equals(TEXT_UNIT_RPM, &value->text[length], left))) return 0;
+  return (a->count < 2u || word_is(a, 1, TEXT_UNIT_RPM)) ? length : 0u;
 }
 
 static void take_speed(const words_of_line_t* a, const decimal_t* number, uint16_t length) {

@@ -4,6 +4,7 @@
 #include "firmware/console/job.h"
 #include "firmware/console/output.h"
 #include "firmware/console/status_text.h"
+#include "firmware/dictionary/units.h"
 #include "firmware/drive/signals.h"
 #include "firmware/mode/fault_history.h"
 #include "firmware/mode/mode.h"
@@ -27,7 +28,7 @@ static void put_fault(octet_writer_t* w, const fault_record_t* f) {
     put_fixed(w, f->speed_q16, 16, 1);
   }
   put_packed(w, turned ? SAY_rpm_link : SAY_speed_unknown_link);
-  put_fixed(w, f->link_q16, 16, 1);
+  put_quantity(w, f->link_q16, UNIT_V, 16, 1);
   if ((f->known & KNOWN_FRAME) != 0u) {
     put_current_pair(w, SAY_v_d, f->current_d_q20, SAY_a_q, f->current_q_q20);
   } else {

@@ -55,11 +55,11 @@ static bool describe(uint16_t step) {
     put_value(w, p, parameter_get(p->id));
   } else if (step == 1u) {
     put_packed(w, SAY_indent);
-    put_fixed(w, parameter_minimum(p), p->q, p->decimals);
+    put_number(w, p, parameter_minimum(p));
     put_packed(w, SAY_to);
     put_value(w, p, parameter_maximum(p));
     put_packed(w, SAY_default);
-    put_fixed(w, parameter_initial(p), p->q, p->decimals);
+    put_number(w, p, parameter_initial(p));
     put_packed(w, SAY_number);
     put_unsigned(w, p->id);
     if (p->access == PARAMETER_STOPPED) put_packed(w, SAY_only_while_the_power_stage_is_off);
@@ -159,7 +159,7 @@ void command_set(const words_of_line_t* a) {
     return;
   }
   typed.count = length;
-  if (!decimal_raw(&number, p->q, &raw) || !parameter_allows(p, raw)) {
+  if (!decimal_raw(&number, parameter_q(p), &raw) || !parameter_allows(p, raw)) {
     refuse_value(p, &typed, SAY_is_outside_of);
   } else if (p->q == 0u && !decimal_is_whole(&number)) {
     refuse_value(p, &typed, SAY_is_not_a_whole_number_in);

@@ -9,6 +9,7 @@
 #include "firmware/console/job.h"
 #include "firmware/console/output.h"
 #include "firmware/console/status_text.h"
+#include "firmware/dictionary/units.h"
 #include "firmware/drive/signals.h"
 #include "firmware/mode/mode.h"
 #include "firmware/text/catalogue.h"
@@ -52,9 +53,9 @@ static void status_state(octet_writer_t* w) {
 void put_current_pair(octet_writer_t* w, packed_text_t before, int32_t first_q20, packed_text_t between,
                       int32_t second_q20) {
   put_packed(w, before);
-  put_fixed(w, first_q20, 20, 2);
+  put_quantity(w, first_q20, UNIT_A, 20, 2);
   put_packed(w, between);
-  put_fixed(w, second_q20, 20, 2);
+  put_quantity(w, second_q20, UNIT_A, 20, 2);
   put_packed(w, SAY_amperes);
 }
 
@@ -69,7 +70,7 @@ static void status_current(octet_writer_t* w) {
 }
 
 static void status_link(octet_writer_t* w) {
-  put_fixed(w, drive_signals().link_voltage, 16, 1);
+  put_quantity(w, drive_signals().link_voltage, UNIT_V, 16, 1);
   put_packed(w, SAY_volts);
 }
 

@@ -9,10 +9,11 @@ uint16_t signal_find(const word_t* name) {
 }
 
 uint16_t signal_decimals(const signal_info_t* s) {
+  const uint16_t q = signal_q(s);
   if (s->q == 0u) return 0;
-  if (s->q <= 8u) return 1;
-  if (s->q <= 16u) return 2;
-  return (s->q <= 20u) ? 3u : 4u;
+  if (q <= 8u) return 1;
+  if (q <= 16u) return 2;
+  return (q <= 20u) ? 3u : 4u;
 }
 
 void put_signal(octet_writer_t* w, uint16_t place) {
@@ -27,7 +28,7 @@ void put_signal(octet_writer_t* w, uint16_t place) {
 }
 
 void put_signal_value(octet_writer_t* w, const signal_info_t* s, int32_t raw) {
-  put_fixed(w, raw, s->q, signal_decimals(s));
+  put_fixed(w, raw, signal_q(s), signal_decimals(s));
   if (packed_is_empty(signal_unit(s))) return;
   put_u8(w, ' ');
   put_packed(w, signal_unit(s));

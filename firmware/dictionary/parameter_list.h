@@ -2,6 +2,7 @@
 //
 // PARAMETER(id, name, unit, q, decimals, minimum, maximum, default, access, meaning)
 //   id        stable for ever; a number is never used again
+//   unit      of unit_list.h; what a current, a voltage or both are in is in units of the formats (units.h)
 //   q         fractional bits of the value in the firmware (int32_t)
 //   minimum, maximum, default: whole numbers in units of 10^-decimals, so that every compiler makes the same constant;
 //             those that the board decides are named, see hal/hal_board.h

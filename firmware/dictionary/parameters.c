@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "firmware/base/edition.h"
+#include "firmware/dictionary/units.h"
 #include "hal/hal_board.h"
 #include "hal/qmath/qdiv.h"
 
@@ -23,7 +24,7 @@ static const int16_t steps[8] = {1, 10, 100, 1000, 1024};
 #undef PARAMETER
 
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
-  {id, q, decimals, PARAMETER_##access, WORD(minimum), WORD(maximum), WORD(initial)},
+  {id, q, decimals, PARAMETER_##access, UNIT_##unit, WORD(minimum), WORD(maximum), WORD(initial)},
 static const parameter_info_t table[] = {
 #include "firmware/dictionary/parameter_list.h"
 };
@@ -39,8 +40,11 @@ static packed_text_t text_of(const parameter_info_t* p, uint16_t first) {
 }
 
 packed_text_t parameter_name(const parameter_info_t* p) { return text_of(p, FIRST(NAME_)); }
-packed_text_t parameter_unit(const parameter_info_t* p) { return text_of(p, FIRST(UNIT_)); }
+packed_text_t parameter_unit(const parameter_info_t* p) { return unit_text(p->unit); }
 packed_text_t parameter_meaning(const parameter_info_t* p) { return text_of(p, FIRST()); }
+
+uint16_t parameter_q(const parameter_info_t* p) { return unit_q(p->unit, p->q); }
+uint16_t parameter_decimals(const parameter_info_t* p) { return unit_decimals(p->unit, p->decimals); }
 
 static int32_t raw_of(const parameter_info_t* p, int16_t word) {
   static const int32_t tens[] = {1L, 10L, 100L, 1000L, 10000L, 100000L, 1000000L};

@@ -12,7 +12,7 @@
 extern "C" {
 #endif
 
-/// One int32_t per parameter, with the table's number of fractional bits.
+/// One int32_t per parameter, with the table's number of fractional bits, in units of the formats (units.h).
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) int32_t name;
 typedef struct {
 #include "firmware/dictionary/parameter_list.h"
@@ -40,9 +40,10 @@ typedef enum { SET_OK = 0, SET_UNKNOWN = 1, SET_RANGE = 2, SET_RUNNING = 3 } par
 
 typedef struct {
   uint16_t id;
-  uint16_t q : 6;
-  uint16_t decimals : 4;
-  uint16_t access : 2;                // parameter_access_t
+  uint16_t q : 5;                     // in the formats; in user's units parameter_q
+  uint16_t decimals : 3;              // likewise parameter_decimals
+  uint16_t access : 1;                // parameter_access_t
+  uint16_t unit : 5;                  // unit_t
   int16_t minimum, maximum, initial;  // packed: parameter_minimum and the others have them
 } parameter_info_t;
 
@@ -51,6 +52,9 @@ uint16_t parameter_count(void);
 const parameter_info_t* parameter_info(uint16_t index);
 packed_text_t parameter_name(const parameter_info_t* p);
 packed_text_t parameter_unit(const parameter_info_t* p);
+/// Fractional bits and decimals in user's units (units.h).
+uint16_t parameter_q(const parameter_info_t* p);
+uint16_t parameter_decimals(const parameter_info_t* p);
 packed_text_t parameter_meaning(const parameter_info_t* p);
 /// Raw, with q fractional bits.
 int32_t parameter_minimum(const parameter_info_t* p);

@@ -1,52 +1,53 @@
 // Parameters of ports and functions of the board: rows of parameter_list.h.
 
 // Serial port
-PARAMETER(200, baud_rate, "Bd", 0, 0, 9600, 400000, 115200, STOPPED,
+PARAMETER(200, baud_rate, BAUD, 0, 0, 9600, 400000, 115200, STOPPED,
           "bit rate of the serial port; saved, it applies from the next power-on")
-PARAMETER(201, link_timeout, "ms", 0, 0, 50, 60000, 1000, ALWAYS,
+PARAMETER(201, link_timeout, MS, 0, 0, 50, 60000, 1000, ALWAYS,
           "longest silence of the client that guards the motor, then link_reaction")
-PARAMETER(202, link_reaction, "", 0, 0, 1, 2, 1, ALWAYS, "communication lost: 1 stop, 2 coast")
+PARAMETER(202, link_reaction, NONE, 0, 0, 1, 2, 1, ALWAYS, "communication lost: 1 stop, 2 coast")
 
 // CAN bus
-PARAMETER(220, can_node, "", 0, 0, 1, 31, 1, STOPPED, "number on the CAN bus, added to the messages' identifiers")
-PARAMETER(221, can_rate, "kbit/s", 0, 0, 0, 1000, 500, STOPPED,
+PARAMETER(220, can_node, NONE, 0, 0, 1, 31, 1, STOPPED, "number on the CAN bus, added to the messages' identifiers")
+PARAMETER(221, can_rate, KBIT_PER_S, 0, 0, 0, 1000, 500, STOPPED,
           "1000, 500, 250, 125, 100, 50, 20 or 10; with 0 or any other value the bus is off")
-PARAMETER(222, can_timeout, "ms", 0, 0, 10, 10000, 200, ALWAYS,
+PARAMETER(222, can_timeout, MS, 0, 0, 10, 10000, 200, ALWAYS,
           "longest silence of the bus that started the drive, then can_reaction")
-PARAMETER(223, can_reaction, "", 0, 0, 0, 2, 1, ALWAYS, "when commands are missing: 0 nothing, 1 stop, 2 coast")
-PARAMETER(224, can_status_period, "ms", 0, 0, 0, 10000, 10, ALWAYS, "period of the STATUS message; 0 sends none")
-PARAMETER(225, can_telemetry_period, "ms", 0, 0, 0, 10000, 20, ALWAYS,
+PARAMETER(223, can_reaction, NONE, 0, 0, 0, 2, 1, ALWAYS, "when commands are missing: 0 nothing, 1 stop, 2 coast")
+PARAMETER(224, can_status_period, MS, 0, 0, 0, 10000, 10, ALWAYS, "period of the STATUS message; 0 sends none")
+PARAMETER(225, can_telemetry_period, MS, 0, 0, 0, 10000, 20, ALWAYS,
           "period of TELEMETRY_1 and TELEMETRY_2; 0 sends none")
-PARAMETER(226, can_recovery, "ms", 0, 0, 1, 10000, 100, ALWAYS, "time from bus-off to the next attempt")
+PARAMETER(226, can_recovery, MS, 0, 0, 1, 10000, 100, ALWAYS, "time from bus-off to the next attempt")
 
 // Functions of the board (board/functions.h)
-PARAMETER(400, bootstrap_time, "ms", 16, 1, 0, 200, BOARD_BOOTSTRAP_TIME, STOPPED,
+PARAMETER(400, bootstrap_time, MS, 16, 1, 0, 200, BOARD_BOOTSTRAP_TIME, STOPPED,
           "lower devices on before the first pulse, for the bootstrap capacitors; 0 where there are none")
-PARAMETER(401, precharge_voltage, "V", 16, 1, 0, 15000, 0, STOPPED,
+PARAMETER(401, precharge_voltage, V, 16, 1, 0, 15000, 0, STOPPED,
           "DC-link voltage at which the precharge relay closes; 0 where there is none")
-PARAMETER(402, precharge_time, "ms", 0, 0, 10, 60000, 2000, ALWAYS, "time for the DC link to reach precharge_voltage")
-PARAMETER(403, brake_voltage, "V", 16, 1, 0, 15000, 0, STOPPED,
+PARAMETER(402, precharge_time, MS, 0, 0, 10, 60000, 2000, ALWAYS, "time for the DC link to reach precharge_voltage")
+PARAMETER(403, brake_voltage, V, 16, 1, 0, 15000, 0, STOPPED,
           "DC-link voltage that switches the brake resistor on; 0 where there is none")
-PARAMETER(404, brake_hysteresis, "V", 16, 1, 10, 1000, 100, ALWAYS,
+PARAMETER(404, brake_hysteresis, V, 16, 1, 10, 1000, 100, ALWAYS,
           "the brake resistor is switched off so far below brake_voltage")
-PARAMETER(405, brake_share, "%", 16, 0, 1, 100, 20, ALWAYS,
+PARAMETER(405, brake_share, PERCENT, 16, 0, 1, 100, 20, ALWAYS,
           "share of the time that the brake resistor may be on, over 8 s")
-PARAMETER(410, temperature_limit, "C", 8, 0, 0, 130, 0, ALWAYS,
+PARAMETER(410, temperature_limit, CELSIUS, 8, 0, 0, 130, 0, ALWAYS,
           "heat-sink temperature of the fault; 0 where there is no sensor")
-PARAMETER(411, temperature_derating, "C", 8, 0, 0, 130, 70, ALWAYS,
+PARAMETER(411, temperature_derating, CELSIUS, 8, 0, 0, 130, 70, ALWAYS,
           "heat-sink temperature from which the current limit falls, to half at temperature_limit")
-PARAMETER(412, overload_current, "A", 20, 2, -100, 10000, -100, ALWAYS,
+PARAMETER(412, overload_current, A, 20, 2, -100, 10000, -100, ALWAYS,
           "continuous phase current, peak, to which overload lowers the limit; below 0: rated_current, 0: no check")
-PARAMETER(413, overload_time, "ms", 0, 0, 100, 600000, 60000, ALWAYS,
+PARAMETER(413, overload_time, MS, 0, 0, 100, 600000, 60000, ALWAYS,
           "time constant of the winding, or of the inverter where that is shorter")
-PARAMETER(420, emergency_stop, "", 0, 0, 0, 1, 0, STOPPED,
+PARAMETER(420, emergency_stop, NONE, 0, 0, 0, 1, 0, STOPPED,
           "1: an emergency-stop contact is wired and switches the gates off")
-PARAMETER(421, gate_feedback, "", 0, 0, 0, 1, 0, STOPPED, "1: the gate enable's output is wired back and watched")
-PARAMETER(430, speed_input, "", 0, 0, 0, 2, 0, STOPPED,
+PARAMETER(421, gate_feedback, NONE, 0, 0, 0, 1, 0, STOPPED, "1: the gate enable's output is wired back and watched")
+PARAMETER(430, speed_input, NONE, 0, 0, 0, 2, 0, STOPPED,
           "speed and run switch at the board: 0 not used, 1 from 0 V, 2 live zero at 10 %")
-PARAMETER(431, speed_input_dead, "%", 16, 1, 0, 500, 20, ALWAYS,
+PARAMETER(431, speed_input_dead, PERCENT, 16, 1, 0, 500, 20, ALWAYS,
           "share of the speed input's lower end that means standstill")
-PARAMETER(432, speed_input_loss, "", 0, 0, 1, 2, 1, ALWAYS, "when the speed input's live zero is lost: 1 stop, 2 coast")
-PARAMETER(433, speed_input_full, "rpm", 8, 0, 10, 6000, 2000, ALWAYS, "speed at the upper end of the speed input")
-PARAMETER(440, reference_input, "", 0, 0, 0, 1, 0, STOPPED,
+PARAMETER(432, speed_input_loss, NONE, 0, 0, 1, 2, 1, ALWAYS,
+          "when the speed input's live zero is lost: 1 stop, 2 coast")
+PARAMETER(433, speed_input_full, RPM, 8, 0, 10, 6000, 2000, ALWAYS, "speed at the upper end of the speed input")
+PARAMETER(440, reference_input, NONE, 0, 0, 0, 1, 0, STOPPED,
           "1: ground and reference are wired to the ADC, for the self-test")

@@ -2,61 +2,61 @@
 
 // Excitation
 PARAMETER(
-    40, excitation, "", 0, 0, 0, 5, 3, STOPPED,
+    40, excitation, NONE, 0, 0, 0, 5, 3, STOPPED,
     "0 centred, 1 extended, 2 alternating, 3 as the source wants, 4 long zero vector, 5 as 2, cheapest pair above")
-PARAMETER(41, pulse_time, "us", 16, 2, 1500, 4700, 4200, ALWAYS, "mean pulse of the alternating layout")
-PARAMETER(42, window_minimum, "us", 16, 2, 500, 3000, 1800, ALWAYS, "T_min, shortest extended vector")
-PARAMETER(43, window_maximum, "us", 16, 2, 500, 4000, 3000, ALWAYS, "longest extended vector, bounds the ripple")
-PARAMETER(44, zero_time, "us", 16, 2, 0, 5000, 0, ALWAYS, "zero vector kept beside the extended ones")
-PARAMETER(45, settle_time, "us", 16, 2, 400, 2500, 1050, ALWAYS, "from an edge at the motor to the first sample")
+PARAMETER(41, pulse_time, US, 16, 2, 1500, 4700, 4200, ALWAYS, "mean pulse of the alternating layout")
+PARAMETER(42, window_minimum, US, 16, 2, 500, 3000, 1800, ALWAYS, "T_min, shortest extended vector")
+PARAMETER(43, window_maximum, US, 16, 2, 500, 4000, 3000, ALWAYS, "longest extended vector, bounds the ripple")
+PARAMETER(44, zero_time, US, 16, 2, 0, 5000, 0, ALWAYS, "zero vector kept beside the extended ones")
+PARAMETER(45, settle_time, US, 16, 2, 400, 2500, 1050, ALWAYS, "from an edge at the motor to the first sample")
 
 // Position and speed
-PARAMETER(60, position_source, "", 0, 0, 0, 8, 4, STOPPED,
+PARAMETER(60, position_source, NONE, 0, 0, 0, 8, 4, STOPPED,
           "0 encoder, 1 paper, 2 observer and AVV, 3 AVV alone, 4 observer alone; and flux: 5 CONV, 6 PP-01, 7 PP-02, "
           "8 active")
-PARAMETER(61, blend_low, "rpm", 16, 1, 50, 10000, 600, STOPPED,
+PARAMETER(61, blend_low, RPM, 16, 1, 50, 10000, 600, STOPPED,
           "mechanical speed below which the low-speed estimator is used")
-PARAMETER(62, blend_high, "rpm", 16, 1, 60, 20000, 1000, STOPPED, "mechanical speed above which AVV is used")
-PARAMETER(63, avv_bandwidth_long, "rad/s", 8, 0, 10, 600, 200, ALWAYS, "bandwidth of AVV's observer, long windows")
-PARAMETER(64, avv_bandwidth_short, "rad/s", 8, 0, 10, 600, 100, ALWAYS, "bandwidth of AVV's observer, short windows")
-PARAMETER(65, adapt_time, "ms", 8, 0, 20, 30000, 150, ALWAYS,
+PARAMETER(62, blend_high, RPM, 16, 1, 60, 20000, 1000, STOPPED, "mechanical speed above which AVV is used")
+PARAMETER(63, avv_bandwidth_long, RAD_PER_S, 8, 0, 10, 600, 200, ALWAYS, "bandwidth of AVV's observer, long windows")
+PARAMETER(64, avv_bandwidth_short, RAD_PER_S, 8, 0, 10, 600, 100, ALWAYS, "bandwidth of AVV's observer, short windows")
+PARAMETER(65, adapt_time, MS, 8, 0, 20, 30000, 150, ALWAYS,
           "time constant of the adaptation of inverse inductances and sensors; 30000 is off")
-PARAMETER(66, observer_noise, "mA", 8, 1, 10, 10000, 1000, ALWAYS, "rms noise of a current difference over a window")
-PARAMETER(67, observer_load_rate, "Nm", 20, 2, 1, 10000, 100, ALWAYS, "load change per 10 ms that the observer expects")
-PARAMETER(75, observer_load_quiet, "Nm", 20, 2, 1, 10000, 5, ALWAYS,
+PARAMETER(66, observer_noise, MA, 8, 1, 10, 10000, 1000, ALWAYS, "rms noise of a current difference over a window")
+PARAMETER(67, observer_load_rate, NM, 20, 2, 1, 10000, 100, ALWAYS, "load change per 10 ms that the observer expects")
+PARAMETER(75, observer_load_quiet, NM, 20, 2, 1, 10000, 5, ALWAYS,
           "observer_load_rate at a crawl, while the load seems steady")
-PARAMETER(77, observer_load_step, "Nm", 20, 2, 1, 10000, 200, ALWAYS,
+PARAMETER(77, observer_load_step, NM, 20, 2, 1, 10000, 200, ALWAYS,
           "load step that the observer looks for at a crawl; at speed twice that, if the map is known")
-PARAMETER(76, cogging_order, "", 0, 0, 0, 60, 6, ALWAYS, "cogging periods per electrical turn; 0 learns none")
-PARAMETER(68, observer_windows, "", 0, 0, 0, 1, 1, ALWAYS,
+PARAMETER(76, cogging_order, NONE, 0, 0, 0, 60, 6, ALWAYS, "cogging periods per electrical turn; 0 learns none")
+PARAMETER(68, observer_windows, NONE, 0, 0, 0, 1, 1, ALWAYS,
           "windows given to the deviation observer: 0 zero vectors only, 1 all")
-PARAMETER(69, zvv_proportional, "rad/s", 8, 1, 1, 2000, 110, ALWAYS, "Kp of the paper's ZVV observer")
-PARAMETER(70, zvv_integral, "rad/s2", 8, 1, 0, 20000, 11000, ALWAYS, "Ki of the paper's ZVV observer")
-PARAMETER(71, id_low_speed, "A", 20, 2, -1000, 1000, 0, ALWAYS,
+PARAMETER(69, zvv_proportional, RAD_PER_S, 8, 1, 1, 2000, 110, ALWAYS, "Kp of the paper's ZVV observer")
+PARAMETER(70, zvv_integral, RAD_PER_S2, 8, 1, 0, 20000, 11000, ALWAYS, "Ki of the paper's ZVV observer")
+PARAMETER(71, id_low_speed, A, 20, 2, -1000, 1000, 0, ALWAYS,
           "d-axis current below the blend, makes the ZVV deviation observable")
-PARAMETER(74, drift_time, "ms", 8, 0, 50, 30000, 2000, ALWAYS,
+PARAMETER(74, drift_time, MS, 8, 0, 50, 30000, 2000, ALWAYS,
           "time constant of the adaptation of resistance and flux; 30000 is off")
-PARAMETER(78, inertia_adapt, "", 0, 0, 0, 1, 1, ALWAYS,
+PARAMETER(78, inertia_adapt, NONE, 0, 0, 0, 1, 1, ALWAYS,
           "learn the inertia from run-ups under a large torque; needs the map")
-PARAMETER(73, encoder_counts, "", 0, 0, 16, 65536, 4096, STOPPED, "counts of the reference encoder per turn")
+PARAMETER(73, encoder_counts, NONE, 0, 0, 16, 65536, 4096, STOPPED, "counts of the reference encoder per turn")
 
 // Control
-PARAMETER(80, current_bandwidth, "rad/s", 0, 0, 100, 2600, 1800, STOPPED, "bandwidth of the current loop")
-PARAMETER(81, speed_law, "", 0, 0, 0, 1, 0, STOPPED, "0 predictive, 1 PI")
-PARAMETER(82, speed_alpha, "A2s2", 8, 0, 1, 100000, 200, STOPPED, "weight of the predicted speed error, per rad^2")
-PARAMETER(83, speed_trajectory, "ms", 8, 1, 20, 2000, 70, STOPPED, "time constant of the speed reference trajectory")
-PARAMETER(84, speed_pi_bandwidth, "rad/s", 8, 1, 10, 2000, 200, STOPPED, "natural frequency of the PI speed loop")
-PARAMETER(85, speed_pi_damping, "", 12, 2, 30, 6000, 80, STOPPED, "damping of the PI speed loop")
-PARAMETER(86, speed_ramp, "rpm/s", 8, 0, 0, 100000, 3000, ALWAYS, "slope of the speed reference, 0 for a step")
-PARAMETER(90, position_hold, "1/s", 8, 1, 0, 200, 50, ALWAYS,
+PARAMETER(80, current_bandwidth, RAD_PER_S, 0, 0, 100, 2600, 1800, STOPPED, "bandwidth of the current loop")
+PARAMETER(81, speed_law, NONE, 0, 0, 0, 1, 0, STOPPED, "0 predictive, 1 PI")
+PARAMETER(82, speed_alpha, A2S2, 14, 0, 1, 100000, 200, STOPPED, "weight of the predicted speed error, per rad^2")
+PARAMETER(83, speed_trajectory, MS, 8, 1, 20, 2000, 70, STOPPED, "time constant of the speed reference trajectory")
+PARAMETER(84, speed_pi_bandwidth, RAD_PER_S, 8, 1, 10, 2000, 200, STOPPED, "natural frequency of the PI speed loop")
+PARAMETER(85, speed_pi_damping, NONE, 12, 2, 30, 6000, 80, STOPPED, "damping of the PI speed loop")
+PARAMETER(86, speed_ramp, RPM_PER_S, 8, 0, 0, 100000, 3000, ALWAYS, "slope of the speed reference, 0 for a step")
+PARAMETER(90, position_hold, PER_S, 8, 1, 0, 200, 50, ALWAYS,
           "how fast the shaft is brought back to where it stood, at a speed reference of zero; 0 lets it creep")
-PARAMETER(87, voltage_use, "%", 16, 1, 500, 1000, 900, ALWAYS,
+PARAMETER(87, voltage_use, PERCENT, 16, 1, 500, 1000, 900, ALWAYS,
           "share of Vdc/sqrt(3) that field weakening leaves to the voltage")
-PARAMETER(88, weakening_limit, "A", 20, 2, 0, 10000, 1200, STOPPED, "largest field-weakening current")
-PARAMETER(89, weakening_gain, "A/V", 20, 4, 0, 1000, 20, ALWAYS, "integral gain of field weakening per millisecond")
+PARAMETER(88, weakening_limit, A, 20, 2, 0, 10000, 1200, STOPPED, "largest field-weakening current")
+PARAMETER(89, weakening_gain, A_PER_V, 20, 4, 0, 1000, 20, ALWAYS, "integral gain of field weakening per millisecond")
 
-PARAMETER(330, mtpa, "", 0, 0, 0, 1, 0, ALWAYS, "1 adds the d-axis current that gives the most torque per ampere")
-PARAMETER(331, current_divider, "", 0, 0, 1, 2, 1, STOPPED,
+PARAMETER(330, mtpa, NONE, 0, 0, 0, 1, 0, ALWAYS, "1 adds the d-axis current that gives the most torque per ampere")
+PARAMETER(331, current_divider, NONE, 0, 0, 1, 2, 1, STOPPED,
           "PWM periods per step of the current control; 2 allows current_bandwidth up to 2080")
-PARAMETER(332, current_corner, "", 0, 0, 0, 1, 0, STOPPED,
+PARAMETER(332, current_corner, NONE, 0, 0, 0, 1, 0, STOPPED,
           "corner of the current controllers' integrator: 0 a quarter of current_bandwidth, 1 the machine's R/L")

@@ -5,41 +5,41 @@
 // 0 else, whatever the estimators make of nothing. What is said of the DRIVE is always known. No include guard: it is
 // included with different meanings of SIGNAL.
 
-SIGNAL(state, "", 0, DRIVE, d->state, "state of the drive")
-SIGNAL(fault, "", 0, DRIVE, d->fault, "latched fault")
-SIGNAL(limit, "", 0, DRIVE, d->limits, "active limits, one bit each")
-SIGNAL(angle, "turn", 32, ROTOR, d->position.selected.angle_bam, "electrical angle in use, at the start of the period")
-SIGNAL(speed, "rpm", 16, ROTOR, SIGNAL_RPM(d->position.selected.speed_bpp), "mechanical speed in use")
-SIGNAL(angle_low, "turn", 32, ROTOR, d->position.low.angle_bam, "electrical angle of the low-speed estimator")
-SIGNAL(angle_avv, "turn", 32, ROTOR, d->position.high.angle_bam, "electrical angle of the AVV estimator")
-SIGNAL(weight, "", 15, DRIVE, d->position.blend.share_q15, "share of the low-speed estimator in the blend")
-SIGNAL(speed_reference, "rpm", 16, DRIVE, SIGNAL_RPM(d->control.ramp.value), "speed reference after the ramp")
-SIGNAL(current_d, "A", 20, FRAME, d->control.measured_q20.d, "measured d-axis current, mean of the period")
-SIGNAL(current_q, "A", 20, FRAME, d->control.measured_q20.q, "measured q-axis current")
-SIGNAL(current_d_reference, "A", 20, DRIVE, d->control.reference_q20.d, "d-axis current reference")
-SIGNAL(current_q_reference, "A", 20, DRIVE, d->control.reference_q20.q, "q-axis current reference")
-SIGNAL(voltage_d, "V", 16, DRIVE, d->control.command_q16.d, "d-axis voltage command")
-SIGNAL(voltage_q, "V", 16, DRIVE, d->control.command_q16.q, "q-axis voltage command")
-SIGNAL(voltage_alpha, "V", 16, DRIVE, d->modulation.command_q16.alpha,
+SIGNAL(state, NONE, 0, DRIVE, d->state, "state of the drive")
+SIGNAL(fault, NONE, 0, DRIVE, d->fault, "latched fault")
+SIGNAL(limit, NONE, 0, DRIVE, d->limits, "active limits, one bit each")
+SIGNAL(angle, TURN, 32, ROTOR, d->position.selected.angle_bam, "electrical angle in use, at the start of the period")
+SIGNAL(speed, RPM, 16, ROTOR, SIGNAL_RPM(d->position.selected.speed_bpp), "mechanical speed in use")
+SIGNAL(angle_low, TURN, 32, ROTOR, d->position.low.angle_bam, "electrical angle of the low-speed estimator")
+SIGNAL(angle_avv, TURN, 32, ROTOR, d->position.high.angle_bam, "electrical angle of the AVV estimator")
+SIGNAL(weight, NONE, 15, DRIVE, d->position.blend.share_q15, "share of the low-speed estimator in the blend")
+SIGNAL(speed_reference, RPM, 16, DRIVE, SIGNAL_RPM(d->control.ramp.value), "speed reference after the ramp")
+SIGNAL(current_d, A, 20, FRAME, d->control.measured_q20.d, "measured d-axis current, mean of the period")
+SIGNAL(current_q, A, 20, FRAME, d->control.measured_q20.q, "measured q-axis current")
+SIGNAL(current_d_reference, A, 20, DRIVE, d->control.reference_q20.d, "d-axis current reference")
+SIGNAL(current_q_reference, A, 20, DRIVE, d->control.reference_q20.q, "q-axis current reference")
+SIGNAL(voltage_d, V, 16, DRIVE, d->control.command_q16.d, "d-axis voltage command")
+SIGNAL(voltage_q, V, 16, DRIVE, d->control.command_q16.q, "q-axis voltage command")
+SIGNAL(voltage_alpha, V, 16, DRIVE, d->modulation.command_q16.alpha,
        "alpha-axis mean voltage for the next period, device drops added")
-SIGNAL(voltage_beta, "V", 16, DRIVE, d->modulation.command_q16.beta, "beta-axis mean voltage for the next period")
-SIGNAL(deviation_q, "A/s", 8, ROTOR, q_mul_sat(d->position.deviation_q20, 10000L, 12),
+SIGNAL(voltage_beta, V, 16, DRIVE, d->modulation.command_q16.beta, "beta-axis mean voltage for the next period")
+SIGNAL(deviation_q, A_PER_S, 8, ROTOR, q_mul_sat(d->position.deviation_q20, 10000L, 12),
        "q-axis current deviation under zero vectors, D of the paper; position_source 0 and 1 only")
-SIGNAL(link_voltage, "V", 16, DRIVE, d->samples.link_q16, "DC-link voltage")
-SIGNAL(load_torque, "Nm", 16, ROTOR, q_mul_sat(d->position.selected.load_accel_q8, d->model.torque_per_accel_q24, 24),
+SIGNAL(link_voltage, V, 16, DRIVE, d->samples.link_q16, "DC-link voltage")
+SIGNAL(load_torque, NM, 16, ROTOR, q_mul_sat(d->position.selected.load_accel_q8, d->model.torque_per_accel_q24, 24),
        "estimated load torque")
-SIGNAL(windows, "", 0, DRIVE, d->samples.count, "current windows sampled in the last period")
-SIGNAL(start_phase, "", 0, DRIVE, d->found.phase, "phase of the start")
-SIGNAL(polarity_sigma, "", 8, DRIVE, d->found.sigma_q8,
+SIGNAL(windows, NONE, 0, DRIVE, d->samples.count, "current windows sampled in the last period")
+SIGNAL(start_phase, NONE, 0, DRIVE, d->found.phase, "phase of the start")
+SIGNAL(polarity_sigma, NONE, 8, DRIVE, d->found.sigma_q8,
        "confidence in the polarity found at the start, standard errors")
-SIGNAL(load_angle, "turn", 32, ROTOR, load_angle(d->position.flux),
+SIGNAL(load_angle, TURN, 32, ROTOR, load_angle(d->position.flux),
        "estimated angle of the stator flux ahead of the rotor")
-SIGNAL(current_a, "A", 20, DRIVE, phase_current(d, false),
+SIGNAL(current_a, A, 20, DRIVE, phase_current(d, false),
        "current of phase a as its sensor reads it, with the gates off as well: mean of the period's windows")
-SIGNAL(current_b, "A", 20, DRIVE, phase_current(d, true), "current of phase b, as current_a")
-SIGNAL(speed_known, "", 0, DRIVE, (known & KNOWN_ROTOR) != 0u,
+SIGNAL(current_b, A, 20, DRIVE, phase_current(d, true), "current of phase b, as current_a")
+SIGNAL(speed_known, NONE, 0, DRIVE, (known & KNOWN_ROTOR) != 0u,
        "1: angle and speed are the rotor's; 0: unknown, the shaft may turn")
-SIGNAL(magnet_flux, "mVs", 16, DRIVE, magnet_flux_q16(d->position.flux),
+SIGNAL(magnet_flux, MVS, 16, DRIVE, magnet_flux_q16(d->position.flux),
        "magnet flux as the stator-flux sources estimate it")
-SIGNAL(wiring, "", 0, DRIVE, d->found.wiring, "wiring mistake found at the start, 0 none")
-SIGNAL(temperature, "C", 8, HEAT_SINK, d->heat_sink_q8, "of the heat sink; unknown where temperature_limit is 0")
+SIGNAL(wiring, NONE, 0, DRIVE, d->found.wiring, "wiring mistake found at the start, 0 none")
+SIGNAL(temperature, CELSIUS, 8, HEAT_SINK, d->heat_sink_q8, "of the heat sink; unknown where temperature_limit is 0")

@@ -13,7 +13,7 @@
 #define FRAME KNOWN_FRAME
 #define HEAT_SINK KNOWN_HEAT_SINK
 
-#define SIGNAL(name, unit, q, of, value, meaning) {TEXT_SIGNAL_NAME_##name, q, of},
+#define SIGNAL(name, unit, q, of, value, meaning) {TEXT_SIGNAL_NAME_##name, q, of, UNIT_##unit},
 static const signal_info_t table[] = {
 #include "firmware/dictionary/signal_list.h"
 };

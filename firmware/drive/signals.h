@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "firmware/text/packed_text.h"
+#include "firmware/dictionary/units.h"
 
 #if defined(__cplusplus)
 extern "C" {
@@ -35,14 +35,15 @@ bool drive_signal_is_known(uint16_t place, uint16_t known);
 
 typedef struct {
   packed_text_t name;
-  uint16_t q : 8;
+  uint16_t q : 8;      // in the formats; in user's units signal_q
   uint16_t needs : 3;  // bit of known_t
+  uint16_t unit : 5;   // unit_t
 } signal_info_t;
 
+static inline packed_text_t signal_unit(const signal_info_t* s) { return unit_text(s->unit); }
+/// Fractional bits in user's units.
+static inline uint16_t signal_q(const signal_info_t* s) { return unit_q(s->unit, s->q); }
 // The texts of all signals stand in the same order.
-static inline packed_text_t signal_unit(const signal_info_t* s) {
-  return (packed_text_t)(s->name - (uint16_t)TEXT_SIGNAL_NAME_speed + (uint16_t)TEXT_SIGNAL_UNIT_speed);
-}
 static inline packed_text_t signal_meaning(const signal_info_t* s) {
   return (packed_text_t)(s->name - (uint16_t)TEXT_SIGNAL_NAME_speed + (uint16_t)TEXT_SIGNAL_speed);
 }

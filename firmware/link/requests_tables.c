@@ -15,8 +15,8 @@
 
 static void put_parameter(octet_writer_t* w, const parameter_info_t* p) {
   put_u16(w, p->id);
-  put_u8(w, p->q);
-  put_u8(w, p->decimals);
+  put_u8(w, parameter_q(p));
+  put_u8(w, parameter_decimals(p));
   put_u8(w, (uint16_t)p->access);
   put_u8(w, 0);  // flags, for later
   put_i32(w, parameter_minimum(p));
@@ -31,7 +31,7 @@ static void put_parameter(octet_writer_t* w, const parameter_info_t* p) {
 
 // What it needs stands in two bits: 0 nothing, 1 the rotor, 2 the frame, 3 the heat sink.
 static void put_signal(octet_writer_t* w, const signal_info_t* s) {
-  put_u8(w, (uint16_t)(s->q | (s->needs - (s->needs >> 2)) << 6));
+  put_u8(w, (uint16_t)(signal_q(s) | (uint16_t)(s->needs - (s->needs >> 2)) << 6));
   put_packed(w, s->name);
   put_u8(w, 0);
   put_packed(w, signal_unit(s));
@@ -46,6 +46,7 @@ static struct {
   uint16_t kind;  // of words
   uint16_t at;    // in the words of a kind, or in parameters and signals counted through
   bool complete;
+  uint16_t scales;  // that it was begun with: formats and ranges in it follow from them
 } sum;
 
 void requests_reset(void) {
@@ -54,6 +55,7 @@ void requests_reset(void) {
   sum.kind = 0;
   sum.at = 0;
   sum.complete = false;
+  sum.scales = unit_scales();
 }
 
 static void add(const octet_writer_t* piece) {
@@ -72,6 +74,7 @@ static void next_words(octet_writer_t* piece) {
 }
 
 void requests_service(void) {
+  if (sum.scales != unit_scales()) requests_reset();
   if (sum.complete) return;
   static uint16_t block[RECORD_BODY_MAX];
   octet_writer_t piece = octet_writer(block, RECORD_BODY_MAX);
@@ -107,7 +110,7 @@ static void put_build(octet_writer_t* w) {
 }
 
 static answer_status_t request_identity(request_t* r) {
-  if (!sum.complete) return ANSWER_BUSY;
+  if (!sum.complete || sum.scales != unit_scales()) return ANSWER_BUSY;
   put_u16(&r->answer, LINK_PROTOCOL);
   put_u16(&r->answer, parameter_count());
   put_u16(&r->answer, signal_count());

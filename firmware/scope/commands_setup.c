@@ -17,12 +17,12 @@
 // Bits of a record's word before its point, by what the quantities of a drive reach: 32 A, 512 V, 8192 rpm.
 static uint16_t shift_of(const signal_info_t* s) {
   static const struct {
-    const char* unit;
-    uint16_t whole;
-  } reach[] = {{"", 7}, {"A", 5}, {"V", 9}, {"rpm", 13}, {"turn", 0}, {"Nm", 5}, {"A/s", 18}};
+    uint16_t unit, whole;
+  } reach[] = {{UNIT_NONE, 7}, {UNIT_A, 5},  {UNIT_V, 9},       {UNIT_RPM, 13},
+               {UNIT_TURN, 0}, {UNIT_NM, 5}, {UNIT_A_PER_S, 18}};
   uint16_t whole = 15;
   for (uint16_t k = 0; k < sizeof reach / sizeof reach[0]; k++) {
-    if (packed_is(signal_unit(s), reach[k].unit)) whole = reach[k].whole;
+    if (s->unit == reach[k].unit) whole = reach[k].whole;
   }
   return (uint16_t)(q_max16((int16_t)(s->q + whole), 15) - 15);
 }
@@ -86,7 +86,7 @@ static bool read_level(const words_of_line_t* a, uint16_t* k, const signal_info_
     line_refused(SAY_scope_trigger_signal_rising_falling_either_a);
     return false;
   }
-  if (!decimal_raw(&number, signal->q, raw)) {
+  if (!decimal_raw(&number, signal_q(signal), raw)) {
     refuse_level(typed, signal);
     return false;
   }

@@ -40,7 +40,7 @@ static void put_trigger(octet_writer_t* w, const scope_setup_t* s) {
     put_signal_value(w, signal, s->level);
     if (s->hysteresis >= 0) {
       put_packed(w, SAY_hysteresis);
-      put_fixed(w, s->hysteresis, signal->q, signal_decimals(signal));
+      put_fixed(w, s->hysteresis, signal_q(signal), signal_decimals(signal));
     }
   } else {
     put_packed(w, SAY_edge_now);
@@ -86,7 +86,7 @@ static bool put_record(octet_writer_t* w, const scope_setup_t* s, uint16_t at) {
     const signal_info_t* const signal = signal_info(s->channel[k].signal);
     int16_t value;
     if (scope_read(k, at, &value, 1) == 0u) return false;
-    const int32_t q = (int32_t)signal->q - (int32_t)s->channel[k].shift;  // -31 has only a sign left
+    const int32_t q = (int32_t)signal_q(signal) - (int32_t)s->channel[k].shift;  // -31 has only a sign left
     if (value == SCOPE_UNKNOWN) {
       put_u8(w, '-');
     } else {

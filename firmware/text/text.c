@@ -118,8 +118,10 @@ uint16_t text_number(const uint16_t* text, uint16_t count, decimal_t* number) {
 bool decimal_is_whole(const decimal_t* number) { return number->digits % ten[number->decimals] == 0; }
 
 bool decimal_raw(const decimal_t* number, uint16_t q, int32_t* raw) {
-  *raw = (q < 32u) ? q_div(number->digits, ten[number->decimals], q)
-                   : qc_shl_sat(q_div(number->digits, ten[number->decimals], 31), 1);
+  const uint16_t beyond = (q > 31u) ? (uint16_t)(q - 31u) : 0u;
+  const int32_t one = ten[number->decimals];
+  if (qc_abs_sat(number->digits) > (INT32_MAX >> beyond)) return false;
+  *raw = q_div(number->digits * ((int32_t)1 << beyond), one, (uint16_t)(q - beyond));
   return qc_abs_sat(*raw) < INT32_MAX;
 }
 

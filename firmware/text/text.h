@@ -40,7 +40,7 @@ uint16_t text_number(const uint16_t* text, uint16_t count, decimal_t* number);
 
 bool decimal_is_whole(const decimal_t* number);
 
-/// Nearest raw value with q fractional bits (0..32). False when it does not fit, or is the last one that would.
+/// Nearest raw value with q fractional bits (0..40). False when it does not fit, or is the last one that would.
 bool decimal_raw(const decimal_t* number, uint16_t q, int32_t* raw);
 
 /// The small letter of a capital; any other character itself.

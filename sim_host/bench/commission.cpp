@@ -29,7 +29,7 @@ class Commissioner : public PeriodListener {
   explicit Commissioner(const CommissionRequest& request) : tap_(request.recording) {
     for (const auto& [name, value] : request.parameters) {
       unsigned id = 0;
-      const std::int32_t raw = parameter_raw(name, value, id);
+      const std::int32_t raw = parameter_raw(name, value, Scale::of(request.parameters), id);
       parameters_.emplace_back(static_cast<std::uint16_t>(id), raw);
     }
   }
@@ -90,9 +90,9 @@ std::vector<Identified> identified() {
     Identified row;
     row.name = text_of(parameter_name(&info));
     row.unit = text_of(parameter_unit(&info));
-    row.decimals = info.decimals;
-    row.before = std::ldexp(r.before, -static_cast<int>(info.q));
-    row.value = std::ldexp(r.value, -static_cast<int>(info.q));
+    row.decimals = parameter_decimals(&info);
+    row.before = std::ldexp(r.before, -static_cast<int>(parameter_q(&info)));
+    row.value = std::ldexp(r.value, -static_cast<int>(parameter_q(&info)));
     row.used = r.verdict == VERDICT_USED;
     row.words = words_of(CATALOGUE_VERDICT, r.verdict);
     list.push_back(row);

@@ -5,6 +5,7 @@
 #include "sim_host/plant/portable_math.hpp"
 
 extern "C" {
+#include "firmware/dictionary/units.h"
 #include "firmware/drive/sampling.h"
 }
 
@@ -41,7 +42,8 @@ WindowInformation::Pair WindowInformation::slope(double angle, double speed, Pai
 }
 
 void WindowInformation::add(Information& sum, double angle, double speed, const estimator_window_t& w) const {
-  const Pair current{std::ldexp(w.current_q20.alpha, -20), std::ldexp(w.current_q20.beta, -20)};
+  const int q = 20 - unit_exponent(UNIT_A);
+  const Pair current{std::ldexp(w.current_q20.alpha, -q), std::ldexp(w.current_q20.beta, -q)};
   const Pair voltage{std::ldexp(w.voltage_q19.alpha, -19), std::ldexp(w.voltage_q19.beta, -19)};
   const double before = (ESTIMATOR_PERIOD_TICKS - w.middle_tick) * kTick;
   const double at = angle - speed * before;

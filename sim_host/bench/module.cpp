@@ -165,6 +165,8 @@ nb::list parameter_rows() {
     row["minimum"] = std::ldexp(parameter_minimum(p), -p->q);
     row["maximum"] = std::ldexp(parameter_maximum(p), -p->q);
     row["default"] = std::ldexp(parameter_initial(p), -p->q);
+    const Powers powers = powers_of(*p);
+    row["powers"] = nb::make_tuple(powers.current, powers.voltage);
     row["access"] = p->access == PARAMETER_ALWAYS ? "always" : "stopped";
     row["help"] = text_of(parameter_meaning(p));
     rows.append(row);
@@ -251,7 +253,7 @@ NB_MODULE(_core, m) {
   m.def("commission", &commission_in_python, nb::kw_only(), nb::arg("plant"), nb::arg("parameters"), nb::arg("limit"),
         nb::arg("seed"), nb::arg("progress").none(), nb::arg("recording") = nb::none(),
         "The firmware's commissioning on the virtual drive; see core.py.");
-  m.def("parameters", &parameter_rows, "The firmware's parameter table.");
+  m.def("parameters", &parameter_rows, "The firmware's parameter table, as it is where both scales are 0.");
   m.def("names", &dictionary_names, "Of all parameters and signals of the firmware, whatever the edition.");
   m.def("check_parameters", &check_parameters, nb::arg("parameters"),
         "Raises ValueError when firmware parameters are unknown, out of range or do not fit together.");

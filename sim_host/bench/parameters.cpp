@@ -23,26 +23,27 @@ const parameter_info_t* find(const std::string& name) {
 
 }  // namespace
 
-std::int32_t parameter_raw(const std::string& name, double value, unsigned& id) {
+std::int32_t parameter_raw(const std::string& name, double value, const Scale& scale, unsigned& id) {
   const parameter_info_t* info = find(name);
   if (info == nullptr) throw std::invalid_argument("there is no firmware parameter '" + name + "'");
   id = info->id;
-  const double raw = std::round(std::ldexp(value, info->q));
+  const double raw = std::round(std::ldexp(value, scale.q(*info)));
   if (std::isfinite(raw) && raw >= parameter_minimum(info) && raw <= parameter_maximum(info))
     return static_cast<std::int32_t>(raw);
   std::ostringstream text;
   text << "firmware parameter " << name << " = " << value << ": out of range, allowed is "
-       << std::ldexp(parameter_minimum(info), -info->q) << " to " << std::ldexp(parameter_maximum(info), -info->q)
-       << " " << text_of(parameter_unit(info));
+       << scale.user(*info, parameter_minimum(info)) << " to " << scale.user(*info, parameter_maximum(info)) << " "
+       << text_of(parameter_unit(info));
   throw std::invalid_argument(text.str());
 }
 
 void check_parameters(const std::map<std::string, double>& parameters) {
   const FirmwareLease lease;
   drive_reset();
+  const Scale scale = Scale::of(parameters);
   for (const auto& [name, value] : parameters) {
     unsigned id = 0;
-    const std::int32_t raw = parameter_raw(name, value, id);
+    const std::int32_t raw = parameter_raw(name, value, scale, id);
     (void)parameter_set(static_cast<std::uint16_t>(id), raw);
   }
   const packed_text_t conflict = parameter_conflict();

@@ -18,7 +18,10 @@ struct Row {
   const Information& told;
 };
 
-double scaled(std::int32_t raw, int q) { return std::ldexp(static_cast<double>(raw), -q); }
+// In user's units.
+double scaled(std::int32_t raw, int q, unit_t unit = UNIT_NONE) {
+  return std::ldexp(static_cast<double>(raw), unit_exponent(static_cast<std::uint16_t>(unit)) - q);
+}
 double radians(std::int32_t bam) { return scaled(bam, 31) * kPi; }
 
 // What is said of the rotor is no number while the drive does not know its angle.
@@ -58,19 +61,23 @@ const Column kColumns[] = {
     {{"i_c", "A", "current of phase c"}, [](const Row& r) { return r.p.current[2]; }},
     {{"true_i_d", "A", "d-axis current at the period's start"}, [](const Row& r) { return r.p.current_d; }},
     {{"true_i_q", "A", "q-axis current at the period's start"}, [](const Row& r) { return r.p.current_q; }},
-    {{"i_d", "A", "d-axis current as measured"}, [](const Row& r) { return known(r, scaled(r.f.current_d, 20)); }},
-    {{"i_q", "A", "q-axis current as measured"}, [](const Row& r) { return known(r, scaled(r.f.current_q, 20)); }},
-    {{"i_d_ref", "A", "d-axis current reference"}, [](const Row& r) { return scaled(r.f.current_d_reference, 20); }},
-    {{"i_q_ref", "A", "q-axis current reference"}, [](const Row& r) { return scaled(r.f.current_q_reference, 20); }},
-    {{"v_d", "V", "d-axis voltage command"}, [](const Row& r) { return scaled(r.f.voltage_d, 16); }},
-    {{"v_q", "V", "q-axis voltage command"}, [](const Row& r) { return scaled(r.f.voltage_q, 16); }},
+    {{"i_d", "A", "d-axis current as measured"},
+     [](const Row& r) { return known(r, scaled(r.f.current_d, 20, UNIT_A)); }},
+    {{"i_q", "A", "q-axis current as measured"},
+     [](const Row& r) { return known(r, scaled(r.f.current_q, 20, UNIT_A)); }},
+    {{"i_d_ref", "A", "d-axis current reference"},
+     [](const Row& r) { return scaled(r.f.current_d_reference, 20, UNIT_A); }},
+    {{"i_q_ref", "A", "q-axis current reference"},
+     [](const Row& r) { return scaled(r.f.current_q_reference, 20, UNIT_A); }},
+    {{"v_d", "V", "d-axis voltage command"}, [](const Row& r) { return scaled(r.f.voltage_d, 16, UNIT_V); }},
+    {{"v_q", "V", "q-axis voltage command"}, [](const Row& r) { return scaled(r.f.voltage_q, 16, UNIT_V); }},
     {{"v_alpha", "V", "alpha-axis mean voltage for the next period"},
-     [](const Row& r) { return scaled(r.f.voltage_alpha, 16); }},
+     [](const Row& r) { return scaled(r.f.voltage_alpha, 16, UNIT_V); }},
     {{"v_beta", "V", "beta-axis mean voltage for the next period"},
-     [](const Row& r) { return scaled(r.f.voltage_beta, 16); }},
-    {{"v_link", "V", "DC-link voltage as measured"}, [](const Row& r) { return scaled(r.f.link_voltage, 16); }},
+     [](const Row& r) { return scaled(r.f.voltage_beta, 16, UNIT_V); }},
+    {{"v_link", "V", "DC-link voltage as measured"}, [](const Row& r) { return scaled(r.f.link_voltage, 16, UNIT_V); }},
     {{"deviation_q", "A/s", "q-axis current deviation under zero vectors (D of the paper)"},
-     [](const Row& r) { return known(r, scaled(r.f.deviation_q, 8)); }},
+     [](const Row& r) { return known(r, scaled(r.f.deviation_q, 8, UNIT_A_PER_S)); }},
     {{"v_dc", "V", "DC-link voltage"}, [](const Row& r) { return r.p.link_voltage; }},
     {{"angle_zvv", "rad", "electrical angle of the low-speed estimator"},
      [](const Row& r) { return known(r, radians(r.f.angle_low)); }},
@@ -78,7 +85,7 @@ const Column kColumns[] = {
      [](const Row& r) { return known(r, radians(r.f.angle_avv)); }},
     {{"weight", "", "share of the low-speed estimator"}, [](const Row& r) { return r.f.weight / 32767.0; }},
     {{"load_estimate", "Nm", "estimated load torque, friction included"},
-     [](const Row& r) { return known(r, scaled(r.f.load_torque, 16)); }},
+     [](const Row& r) { return known(r, scaled(r.f.load_torque, 16, UNIT_NM)); }},
     {{"state", "", "state of the drive"}, [](const Row& r) { return static_cast<double>(r.f.state); }},
     {{"fault", "", "latched fault"}, [](const Row& r) { return static_cast<double>(r.f.fault); }},
     {{"start_phase", "", "phase of the start"}, [](const Row& r) { return static_cast<double>(r.f.start_phase); }},
@@ -91,7 +98,7 @@ const Column kColumns[] = {
      [](const Row& r) { return known(r, radians(r.f.load_angle)); },
      kPlace_load_angle},
     {{"magnet_flux", "Vs", "magnet flux as the stator-flux sources estimate it"},
-     [](const Row& r) { return scaled(r.f.magnet_flux, 16) * 1e-3; },
+     [](const Row& r) { return scaled(r.f.magnet_flux, 16, UNIT_MVS) * 1e-3; },
      kPlace_magnet_flux},
     {{"told_angle", "1/rad^2", "Fisher information of the last period's windows about the electrical angle"},
      [](const Row& r) { return r.told.angle; }},

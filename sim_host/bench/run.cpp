@@ -28,10 +28,11 @@ struct RawParameter {
 };
 
 std::vector<RawParameter> raw_parameters(const std::map<std::string, double>& wanted) {
+  const Scale scale = Scale::of(wanted);
   std::vector<RawParameter> list;
   for (const auto& [name, value] : wanted) {
     RawParameter p{};
-    p.raw = parameter_raw(name, value, p.id);
+    p.raw = parameter_raw(name, value, scale, p.id);
     list.push_back(p);
   }
   return list;
@@ -63,7 +64,7 @@ class Director : public PeriodListener {
         tap_(request.recording),
         parameters_(raw_parameters(request.parameters)) {
     recorder_.reserve(static_cast<std::size_t>(request.duration * 1e4 / request.record_every) + 2);
-    for (const Command& c : request.commands) check(c);
+    for (const Command& c : request.commands) check(c, Scale::of(request.parameters));
   }
 
   void attach(Board& board) {
@@ -93,10 +94,10 @@ class Director : public PeriodListener {
   }
 
  private:
-  static void check(const Command& c) {
+  static void check(const Command& c, const Scale& scale) {
     unsigned id = 0;
     if (c.what.rfind("set:", 0) == 0) {
-      (void)parameter_raw(c.what.substr(4), c.value, id);
+      (void)parameter_raw(c.what.substr(4), c.value, scale, id);
     } else if (c.what != "speed_ref_rpm" && c.what != "start" && c.what != "stop" && c.what != "coast" &&
                c.what != "reset") {
       throw std::invalid_argument("there is no command '" + c.what +
@@ -181,7 +182,7 @@ class Director : public PeriodListener {
     if (c.what == "reset") tell(COMMAND_RESET, drive_command_reset);
     if (c.what.rfind("set:", 0) == 0) {
       RawParameter p{};
-      p.raw = parameter_raw(c.what.substr(4), c.value, p.id);
+      p.raw = parameter_raw(c.what.substr(4), c.value, Scale::of(request_.parameters), p.id);
       set(p);
     }
   }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "sim_host/bench/recording_tap.hpp"
+#include "sim_host/bench/scale.hpp"
 #include "sim_host/bench/setup.hpp"
 #include "sim_host/bench/waveform.hpp"
 
@@ -65,7 +66,7 @@ RunResult run(const RunRequest& request);
 void check_parameters(const std::map<std::string, double>& parameters);
 
 /// Raw value of a firmware parameter from user units; throws std::invalid_argument with value, range and unit.
-std::int32_t parameter_raw(const std::string& name, double value, unsigned& id);
+std::int32_t parameter_raw(const std::string& name, double value, const Scale& scale, unsigned& id);
 
 }  // namespace stillspin::bench
 

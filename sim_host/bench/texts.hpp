@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "firmware/dictionary/units.h"
 #include "firmware/text/catalogue.h"
 
 namespace stillspin::bench {
@@ -21,6 +22,16 @@ std::string written(Write write) {
 
 inline std::string text_of(packed_text_t text) {
   return written([=](octet_writer_t* w) { put_packed(w, text); });
+}
+
+/// A unit's text.
+inline const char* unit_name(unit_t unit) {
+#define UNIT(unit, text, current, voltage) text,
+  static const char* const names[] = {
+#include "firmware/dictionary/unit_list.h"
+  };
+#undef UNIT
+  return names[unit];
 }
 
 /// What the drive's number means.

@@ -13,6 +13,7 @@
 #include "firmware/mode/commands.h"
 #include "firmware/store/store.h"
 #include "sim_host/bench/run.hpp"
+#include "sim_host/bench/texts.hpp"
 #include "sim_host/chip/boot_rom.hpp"
 #include "sim_host/chip/memory.hpp"
 
@@ -42,7 +43,7 @@ VirtualBoard::VirtualBoard(const BoardRequest& request)
       chip_(board_, request.image.empty() ? firmware_main : chip::boot_rom) {
   for (const auto& [name, value] : request.parameters) {
     unsigned id = 0;
-    const std::int32_t raw = parameter_raw(name, value, id);
+    const std::int32_t raw = parameter_raw(name, value, Scale::of(request.parameters), id);
     parameters_.push_back({static_cast<std::uint16_t>(id), raw});
   }
   if (!request.image.empty()) {
@@ -190,7 +191,8 @@ std::vector<Quantity> VirtualBoard::truth() {
 std::vector<Quantity> VirtualBoard::signals() {
   const drive_signals_t s = drive_signals();
   return {
-#define SIGNAL(name, unit, q, of, value, meaning) {#name, unit, std::ldexp(static_cast<double>(s.name), -(q))},
+#define SIGNAL(name, unit, q, of, value, meaning) \
+  {#name, unit_name(UNIT_##unit), std::ldexp(static_cast<double>(s.name), unit_exponent(UNIT_##unit) - (q))},
 #include "firmware/dictionary/signal_list.h"
 #undef SIGNAL
   };

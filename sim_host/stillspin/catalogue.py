@@ -101,9 +101,10 @@ def verdict(name: str, native: core.NativeCore) -> Verdict:
     """What `motor check` says of a motor of the catalogue, by a start of the virtual drive where it comes to that."""
     schema, known = core.plant_schema(native), core.parameters(native)
     try:
-        motor = Motor(profile.load(name, schema, known, name, checked=False), schema, known)
+        chosen = profile.load(name, schema, known, name, checked=False)
     except InputError as error:
         return Verdict("refused", str(error).removeprefix(f"{resources.find('motors', name)}: "))
+    motor = Motor(chosen, schema, core.at_scale(known, chosen.parameters))
     wrong = [finding for finding in motor_check.findings(motor, native) if not finding.works]
     if not wrong:
         return Verdict("works", "")

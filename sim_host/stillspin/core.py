@@ -164,6 +164,8 @@ BOARD = "STILLSPIN_BOARD"
 
 
 NOT_INSTALLED = f"this needs the virtual drive, which is missing: {extras.remedy('virtual')}"
+CURRENT_SCALE, VOLTAGE_SCALE = "current_scale", "voltage_scale"
+"""Parameters that move the ranges of those that have amperes or volts in their units."""
 PARAMETERS = "parameters.json"
 """The firmware's parameter table in a wheel, which has no native module to ask; toolchain/wheel.py puts it there."""
 
@@ -315,7 +317,17 @@ def _parameter_entry(row: Mapping[str, Any]) -> Entry:
         number=int(row["id"]),
         decimals=decimals,
         whole=bool(row["whole"]),
+        powers=(int(row["powers"][0]), int(row["powers"][1])),
     )
+
+
+def at_scale(known: Mapping[str, Entry], told: Mapping[str, Any]) -> dict[str, Entry]:
+    """The parameters of a drive that is told these values.
+
+    Its `current_scale` and `voltage_scale` move range and default of all that has amperes or volts in it.
+    """
+    current, voltage = (round(float(told.get(name, 0.0))) for name in (CURRENT_SCALE, VOLTAGE_SCALE))
+    return {name: entry.at_scale(current, voltage) for name, entry in known.items()}
 
 
 def parameter(known: Mapping[str, Entry], name: str, value: object, where: str) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from stillspin import json_schema
@@ -10,6 +10,7 @@ from stillspin.json_schema import Json
 from stillspin.quantity import Range
 
 Value = float | int | bool | str
+_DECIMALS_MAX = 9  # UNIT_DECIMALS_MAX of units.h
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,24 @@ class Entry:
     number: int = 0
     decimals: int = 0
     whole: bool = False
+    powers: tuple[int, int] = (0, 0)
+    """How often a parameter's unit has that of a current and that of a voltage in it."""
+    exponent: int = 0
+    """Powers of two by which its range is moved (`at_scale`)."""
+
+    def at_scale(self, current: int, voltage: int) -> Entry:
+        """The same in a drive with these values of current_scale and voltage_scale."""
+        exponent = self.powers[0] * current + self.powers[1] * voltage
+        if exponent == self.exponent:
+            return self
+        factor = 2.0 ** (exponent - self.exponent)
+        minimum, maximum = (None if bound is None else bound * factor for bound in (self.minimum, self.maximum))
+        return replace(self, exponent=exponent, minimum=minimum, maximum=maximum, default=float(self.default) * factor)
+
+    @property
+    def places(self) -> int:
+        """Decimals that show what `decimals` show where both scales are 0."""
+        return min(self.decimals + (3 * max(0, -self.exponent) + 9) // 10, _DECIMALS_MAX)
 
     @property
     def range_text(self) -> str:

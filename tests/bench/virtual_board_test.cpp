@@ -65,7 +65,7 @@ TEST(VirtualBoard, ParametersAreToldOnceTheDriveIsReady) {
   BoardRequest r = request();
   r.parameters = {{"speed_ramp", 1234.0}};
   unsigned id = 0;
-  const std::int32_t raw = parameter_raw("speed_ramp", 1234.0, id);
+  const std::int32_t raw = parameter_raw("speed_ramp", 1234.0, Scale(), id);
   VirtualBoard board(r);
   EXPECT_NE(parameter_get(static_cast<std::uint16_t>(id)), raw);
   board.advance(kReady);
@@ -78,7 +78,7 @@ TEST(VirtualBoard, WhatIsSavedOverrulesTheProfile) {
   BoardRequest r = request();
   r.parameters = {{"speed_ramp", 1234.0}};
   unsigned id = 0;
-  (void)parameter_raw("speed_ramp", 1234.0, id);
+  (void)parameter_raw("speed_ramp", 1234.0, Scale(), id);
   const auto ramp = static_cast<std::uint16_t>(id);
   const std::int32_t initial = parameter_initial(parameter_by_id(ramp));
   std::vector<std::uint8_t> memory;

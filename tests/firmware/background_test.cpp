@@ -52,7 +52,7 @@ TEST_F(Reload, TheMachineFollowsWhileThePowerStageIsOff) {
     parameters.encoder_counts = 1000;
     parameters.dead_time = raw(1.3, 16);
     parameters.magnet_flux = raw(0.1, 28);
-    parameters.speed_alpha = raw(20.0, 8);
+    parameters.speed_alpha = raw(20.0, 14);
     board.dead_band = 0;
     board.encoder_counts = 0;
     reload();

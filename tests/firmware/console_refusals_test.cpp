@@ -67,7 +67,7 @@ TEST_F(Refusals, EveryWayToSayNoIsOne) {
                                   std::string("set"),
                                   std::string("set nothing 1"),
                                   std::string("set speed_limit fast"),
-                                  std::string("set speed_limit 7000"),
+                                  std::string("set speed_limit 70000"),
                                   std::string("set speed_limit 7 A"),
                                   std::string("ref fast"),
                                   std::string("ref 20000"),

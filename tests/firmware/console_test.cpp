@@ -45,19 +45,19 @@ TEST_F(Console, GetAndSet) {
   EXPECT_EQ(command("set stator_resistance .41"), "stator_resistance = 0.4100 ohm\r\n");
   EXPECT_EQ(command("set ldq_1 -0.5 mH"), "ldq_1 = -0.5000 mH\r\n");
   EXPECT_EQ(command("get speed_limit"),
-            "speed_limit = 3300 rpm\r\n  10 .. 6000 rpm, default 3300, number 9; only while the power stage is off\r\n"
+            "speed_limit = 3300 rpm\r\n  10 .. 20000 rpm, default 3300, number 9; only while the power stage is off\r\n"
             "  largest speed reference\r\n");
   EXPECT_TRUE(has(command("get link_voltage"), "DC-link voltage")) << "signals too";
 }
 
 TEST_F(Console, WhatIsRefusedIsExplained) {
-  EXPECT_EQ(command("set speed_limit 7000 rpm"),
-            "speed_limit = 7000 is outside of 10 .. 6000 rpm: nothing changed\r\n");
+  EXPECT_EQ(command("set speed_limit 70000 rpm"),
+            "speed_limit = 70000 is outside of 10 .. 20000 rpm: nothing changed\r\n");
   EXPECT_EQ(command("set speed_limit 7 krpm"), "speed_limit is in rpm: nothing changed\r\n");
   EXPECT_EQ(command("set speed_limit 7krpm"), "speed_limit is in rpm: nothing changed\r\n");
   EXPECT_EQ(command("set pole_pairs 3 A"), "pole_pairs has no unit: nothing changed\r\n");
   EXPECT_EQ(command("set speed_limit fast"),
-            "speed_limit = fast is not a number (point, no comma) in 10 .. 6000 rpm: nothing changed\r\n");
+            "speed_limit = fast is not a number (point, no comma) in 10 .. 20000 rpm: nothing changed\r\n");
   EXPECT_TRUE(has(command("set speed_limit"), "set name value [unit]"));
   EXPECT_TRUE(has(command("set speed_limit 1 2 3"), "set name value [unit]"));
   EXPECT_EQ(parameters.speed_limit, 3300 * 256);
@@ -67,9 +67,9 @@ TEST_F(Console, WhatIsRefusedIsExplained) {
 }
 
 TEST_F(Console, NumbersAreOneRule) {
-  EXPECT_EQ(command("set pole_pairs 2.5"), "pole_pairs = 2.5 is not a whole number in 1 .. 20: nothing changed\r\n");
+  EXPECT_EQ(command("set pole_pairs 2.5"), "pole_pairs = 2.5 is not a whole number in 1 .. 30: nothing changed\r\n");
   EXPECT_EQ(command("set pole_pairs 25e-1"),
-            "pole_pairs = 25e-1 is not a whole number in 1 .. 20: nothing changed\r\n");
+            "pole_pairs = 25e-1 is not a whole number in 1 .. 30: nothing changed\r\n");
   EXPECT_EQ(command("set pole_pairs 2.0"), "pole_pairs = 2\r\n");
   EXPECT_EQ(command("set pole_pairs 0.3e1"), "pole_pairs = 3\r\n");
   EXPECT_EQ(command("set stator_resistance 1,5"),

@@ -135,7 +135,7 @@ TEST_F(Units, TheFluxHasHalfTheBand) {
 TEST_F(Units, SpeedControl) {
   parameters.friction = raw(0.0123, 24);
   parameters.inertia = raw(0.0031, 24);
-  parameters.speed_alpha = raw(345.0, 8);
+  parameters.speed_alpha = raw(345.0, 14);
   parameters.speed_trajectory = raw(9.5, 8);
   parameters.speed_pi_bandwidth = raw(33.0, 8);
   parameters.speed_pi_damping = raw(0.9, 12);
@@ -145,7 +145,7 @@ TEST_F(Units, SpeedControl) {
   EXPECT_EQ(c.speed.friction_q24, parameters.friction);
   EXPECT_EQ(c.speed.inertia_q24, parameters.inertia);
   EXPECT_EQ(c.speed.step_periods, 10);
-  EXPECT_EQ(c.speed.alpha_q8, parameters.speed_alpha);
+  EXPECT_EQ(c.speed.alpha_q8, raw(345.0, 8));
   EXPECT_EQ(c.speed.trajectory_ms_q8, parameters.speed_trajectory);
   EXPECT_EQ(c.speed.pi_bandwidth_q8, parameters.speed_pi_bandwidth);
   EXPECT_EQ(c.speed.pi_damping_q12, parameters.speed_pi_damping);

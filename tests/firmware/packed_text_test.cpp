@@ -29,9 +29,9 @@ struct Row {
 };
 
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
-  {TEXT_PARAMETER_##name, meaning}, {TEXT_PARAMETER_NAME_##name, #name}, {TEXT_PARAMETER_UNIT_##name, unit},
-#define SIGNAL(name, unit, q, of, value, meaning) \
-  {TEXT_SIGNAL_##name, meaning}, {TEXT_SIGNAL_NAME_##name, #name}, {TEXT_SIGNAL_UNIT_##name, unit},
+  {TEXT_PARAMETER_##name, meaning}, {TEXT_PARAMETER_NAME_##name, #name},
+#define SIGNAL(name, unit, q, of, value, meaning) {TEXT_SIGNAL_##name, meaning}, {TEXT_SIGNAL_NAME_##name, #name},
+#define UNIT(unit, text, current, voltage) {TEXT_UNIT_##unit, text},
 #define FAULT(number, name, words, remedy) {TEXT_FAULT_##number, words}, {TEXT_REMEDY_##number, remedy},
 #define WORDS(kind, code, text) {TEXT_##kind##_##code, text},
 #define COMMAND(name, arguments, help) \
@@ -47,6 +47,7 @@ const Row kListed[] = {
 #include "firmware/dictionary/fault_list.h"
 #include "firmware/dictionary/parameter_list.h"
 #include "firmware/dictionary/signal_list.h"
+#include "firmware/dictionary/unit_list.h"
 #include "firmware/hil/phrase_list.h"
 #include "firmware/scope/phrase_list.h"
 #include "firmware/store/phrase_list.h"
@@ -55,6 +56,7 @@ const Row kListed[] = {
 };
 #undef PARAMETER
 #undef SIGNAL
+#undef UNIT
 #undef FAULT
 #undef WORDS
 #undef COMMAND
@@ -99,8 +101,8 @@ TEST(PackedText, EqualsItselfAlone) {
     EXPECT_FALSE(equals(row.number, row.text.substr(0, row.text.size() - 1)));
     EXPECT_FALSE(packed_is(row.number, row.text.substr(0, row.text.size() - 1).c_str()));
   }
-  EXPECT_TRUE(equals(TEXT_PARAMETER_UNIT_stator_resistance, "OHM"));
-  EXPECT_FALSE(packed_is(TEXT_PARAMETER_UNIT_stator_resistance, "OHM"));
+  EXPECT_TRUE(equals(TEXT_UNIT_OHM, "OHM"));
+  EXPECT_FALSE(packed_is(TEXT_UNIT_OHM, "OHM"));
 }
 
 TEST(PackedText, ACopyIsTheTextAsFarAsThereIsRoom) {

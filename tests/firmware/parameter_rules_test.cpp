@@ -46,6 +46,7 @@ struct Rule {
 };
 
 TEST_F(ParameterRules, EachHoldsUpToItsLimit) {
+  parameters.magnet_flux = raw(0.03, 28);  // no EMF that charges the link
   const parameters_t p = parameters;
   const Rule rules[] = {
       {&parameters_t::inductance_q, p.inductance_d, p.inductance_d - 1, "inductance_q must be"},
@@ -65,6 +66,7 @@ TEST_F(ParameterRules, EachHoldsUpToItsLimit) {
       {&parameters_t::weakening_limit, p.current_limit, p.current_limit + 1, "weakening_limit"},
       {&parameters_t::window_minimum, p.settle_time + raw(4.5, 16), p.settle_time + raw(4.5, 16) - 1,
        "window_minimum must be settle_time"},
+      {&parameters_t::speed_limit, raw(15000.0, 8), raw(15000.0, 8) + 1, "1 kHz"},
       {&parameters_t::slice_time, raw(10.0, 16), raw(11.0, 16), "slice_time"},
   };
   for (const Rule& rule : rules) {

@@ -130,9 +130,9 @@ TEST_F(Requests, ReadGetAndSet) {
 }
 
 TEST_F(Requests, ARefusalSaysWhy) {
-  const Answer range = set(9, 7000 * 256);
+  const Answer range = set(9, 70000 * 256);
   EXPECT_EQ(range.status(), RANGE);
-  EXPECT_EQ(range.text(), "speed_limit = 7000.0 is outside of 10 .. 6000 rpm: nothing changed");
+  EXPECT_EQ(range.text(), "speed_limit = 70000.0 is outside of 10 .. 20000 rpm: nothing changed");
   EXPECT_EQ(parameter_get(9), 3300 * 256);
   inside::state() = DRIVE_RUN;
   const Answer running = set(9, 1000 * 256);

@@ -17,7 +17,7 @@ TEST_F(Store, AnOlderFirmwareHadFewerParameters) {
   Image image;
   image.entries = table();
   image.entries.resize(20);
-  image.entries[7].raw = 12 << 20;  // current_limit
+  entry(image, 8).raw = 12 << 20;  // current_limit
   put(0, image);
   EXPECT_EQ(power_on(), STORE_MIGRATED);
   EXPECT_EQ(parameters.current_limit, 12 << 20);
@@ -55,7 +55,7 @@ TEST_F(Store, AnOverloadThatNobodyHasSetIsWatchedFromNowOn) {
 TEST_F(Store, OrderDoesNotMatter) {
   Image image;
   image.entries = table();
-  image.entries[7].raw = 12 << 20;
+  entry(image, 8).raw = 12 << 20;
   std::reverse(image.entries.begin(), image.entries.end());
   put(1, image);
   EXPECT_EQ(power_on(), STORE_LOADED);
@@ -224,7 +224,7 @@ TEST_F(Store, ANewerFormatIsToldFromDamage) {
 TEST_F(Store, OlderValuesAreBetterThanNone) {
   Image image;
   image.entries = table();
-  image.entries[7].raw = 12 << 20;
+  entry(image, 8).raw = 12 << 20;
   put(0, image);
   image.version = SLOT_VERSION + 1;
   image.sequence = 2;

@@ -96,6 +96,9 @@ class Store : public Drive {
     }
     return entries;
   }
+  static slot_entry_t& entry(Image& image, std::uint16_t id) {
+    return *std::find_if(image.entries.begin(), image.entries.end(), [=](const slot_entry_t& e) { return e.id == id; });
+  }
   static void put(unsigned slot, const Image& image) {
     const std::vector<std::uint16_t> octets = slot_of(image.version, image.sequence, image.entries);
     std::copy(octets.begin(), octets.end(), nvm.memory.begin() + slot * SLOT_SIZE);

@@ -3,6 +3,7 @@
 # id, name, unit, q, decimals, minimum, maximum, initial, always, meaning; values in the unit
 PARAMETERS = [
     (1, "motor_poles", "", 0, 0, 1, 20, 4, False, "pole pairs"),
+    (10, "current_scale", "", 0, 0, -6, 6, 0, False, "power of two of the currents' ranges"),
     (6, "current_limit", "A", 20, 2, 0.1, 16, 14, True, "largest current"),
     (8, "speed_limit", "rpm", 8, 0, 100, 4000, 3300, False, "largest speed"),
     (86, "speed_ramp", "rpm/s", 8, 0, 0, 100000, 3000, True, "slope of the speed reference, 0 for a step"),

@@ -150,7 +150,7 @@ def test_a_parameter_that_is_on_no_page_fails_the_check(tree: Path) -> None:
     assert pieces.check(tree) == []
     listed = tree / "firmware/dictionary/parameters_machine.h"
     text = listed.read_text(encoding="utf-8")
-    listed.write_text(text.replace("1, 20, 4, STOPPED", "1, 21, 4, STOPPED"), encoding="utf-8")
+    listed.write_text(text.replace("1, 30, 4, STOPPED", "1, 31, 4, STOPPED"), encoding="utf-8")
     assert [str(finding) for finding in pieces.check(tree)] == [
         f"docs/parameters.md:{_line(tree)}: parameters is stale: run toolchain/render.py"
     ]

@@ -37,13 +37,13 @@ def ask(call, fake):
 
 def test_a_dump_is_loaded_without_a_change(ask, fake, tmp_path):
     fake.values[6] = 14_680_065  # a raw value that no number of two decimals gives
-    assert ask("params", "dump", "all.toml").stdout == "7 parameters; see all.toml\n"
+    assert ask("params", "dump", "all.toml").stdout == "8 parameters; see all.toml\n"
     assert "speed_ramp = 3000  # rpm/s; slope of the speed reference" in (tmp_path / "all.toml").read_text()
     before = dict(fake.values)
     result = ask("params", "load", "all.toml")
-    assert result.stdout == "0 of 7 parameters changed\n"
+    assert result.stdout == "0 of 8 parameters changed\n"
     assert fake.values == before
-    assert ask("params", "diff", "all.toml").stdout == "0 of 7 parameters different\n"
+    assert ask("params", "diff", "all.toml").stdout == "0 of 8 parameters different\n"
 
 
 def test_what_differs_is_shown_and_loaded(ask, fake, tmp_path):
@@ -56,7 +56,7 @@ def test_what_differs_is_shown_and_loaded(ask, fake, tmp_path):
     assert fake.values[86] == 500 * 2**8
     assert fake.store == 5
     assert "speed_ramp = 500" in ask("params", "dump", "--changed").stdout
-    assert "1 of 7 parameters different" in ask("params", "diff", "defaults").stdout
+    assert "1 of 8 parameters different" in ask("params", "diff", "defaults").stdout
 
 
 def test_what_the_next_power_on_would_not_have_is_said_behind_what_changed_it(ask, fake, tmp_path):

@@ -17,6 +17,7 @@ CALLS = {
     "set": lambda drive: drive.set("speed_ramp", 1000),
     "change": lambda drive: drive.change("speed_ramp", 1000),
     "parameters": lambda drive: drive.parameters(),
+    "set_scales": lambda drive: drive.set_scales({"current_scale": 1.0}),
     "raw_parameters": lambda drive: drive.raw_parameters(),
     "start": lambda drive: drive.start(100),
     "stop": lambda drive: drive.stop(),

@@ -140,7 +140,7 @@ def test_a_motor_without_saliency_does_not_start_at_rest(native):
             "by 28 A, up to 19 A at current_limit; trip_current is 18 A",
         ),
         (("source_voltage = 300.0", "source_voltage = 20.0"), "polarity", "asks for 5 A; the link drives up to 4.62 A"),
-        (("pole_pairs = 3", "pole_pairs = 40"), "range", "pole_pairs: 40 is out of range; 1 … 20"),
+        (("pole_pairs = 3", "pole_pairs = 40"), "range", "pole_pairs: 40 is out of range; 1 … 30"),
         (("pole_pairs = 3", "pole_pairs = 20\n"), "periods per turn", ""),
     ],
 )

@@ -159,7 +159,7 @@ def test_what_the_file_states_of_a_parameter_goes_before_what_follows(native, tm
 
 def test_what_is_not_stated_is_said_and_what_the_drive_keeps_instead(native, tmp_path):
     loaded = profile.load("ideal", core.plant_schema(native), core.parameters(native), str(pump(tmp_path)))
-    assert "mechanics.inertia is not stated; the drive keeps inertia = 0.00455 kgm2" in loaded.not_stated
+    assert "mechanics.inertia is not stated; the drive keeps inertia = 0.000284375 kgm2" in loaded.not_stated
     assert "parameters.speed_limit is not stated; the drive keeps speed_limit = 3300 rpm" in loaded.not_stated
     assert len(loaded.not_stated) == 4  # and friction, and the rated current
 

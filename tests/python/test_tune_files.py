@@ -73,10 +73,10 @@ def test_parameters_go_to_a_file_and_come_back(tuned, server, fake, drive, tmp_p
         tuned.click("a[href='/file/parameters.toml']")
     file = tmp_path / "motor.toml"
     file.write_text(download.value.path().read_text().replace("speed_ramp = 3000", "speed_ramp = 1234"))
-    assert parameter_file.read(file, drive.table)["speed_ramp"] == 1234
+    assert parameter_file.read(file, drive.table, drive.parameters())["speed_ramp"] == 1234
     tuned.set_input_files("#load-file", file)
     assert wait_until(lambda: fake.values[86] == 1234 << 8, 10)
-    tuned.wait_for_selector("#store-note:has-text('motor.toml names 7 parameters, of which 1 had another value here')")
+    tuned.wait_for_selector("#store-note:has-text('motor.toml names 8 parameters, of which 1 had another value here')")
     assert tuned.input_value("[data-name=speed_ramp] input") == "1234"
 
 

@@ -11,7 +11,11 @@ from pathlib import Path
 from board_table import read
 from pack_text import rows, whole
 
-LIST, SEEN = "firmware/dictionary/parameter_list.h", "docs/what_you_see.toml"
+LIST, UNITS, SEEN = (
+    "firmware/dictionary/parameter_list.h",
+    "firmware/dictionary/unit_list.h",
+    "docs/what_you_see.toml",
+)
 BOARD = "hal/boards/bench.h"
 ACCESS = {"STOPPED": "may change only while the power stage is off", "ALWAYS": "may change at any time"}
 WHO = {
@@ -42,6 +46,7 @@ class Parameter:
 def parameters(root: Path) -> Iterator[Parameter]:
     """All of them, in the order of the list; what the board decides is that of `bench`."""
     board = {name: text.rstrip("u") for name, text in read(root / BOARD).values.items()}
+    units = {token: text for token, text, *_ in rows((root / UNITS).read_text(encoding="utf-8"), "UNIT")}
     text = whole(root, LIST)
     starts = [match for match in _HEADING.finditer(text) if match.start() > 0]
     for k, match in enumerate(starts):
@@ -49,7 +54,7 @@ def parameters(root: Path) -> Iterator[Parameter]:
         title = match["title"].partition(" (")[0].partition(":")[0]
         for number, name, unit, _, decimals, *limits, access, meaning in rows(part, "PARAMETER"):
             least, most, default = (_written(board.get(limit, limit), int(decimals)) for limit in limits)
-            yield Parameter(title, number, name, unit, least, most, default, access, meaning)
+            yield Parameter(title, number, name, units[unit], least, most, default, access, meaning)
 
 
 def _written(raw: str, decimals: int) -> str:

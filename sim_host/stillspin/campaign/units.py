@@ -103,10 +103,10 @@ def _unit(wish: Wish, motor: str) -> Unit:
     schema = core.plant_schema(native)
     chosen = wish.profile or (motor if motor in resources.names(_PROFILES) else _USUAL)
     plate = profile.load(chosen, schema, known, motor, checked=False)
-    changes = profile.changes(wish.changes, schema, known)
+    changes = profile.changes(wish.changes, schema, known, plate.parameters)
     settings = Settings(plate, changes, wish.seed, revision(), firmware=wish.firmware)
     unit = Unit(motor, chosen, duty.of(plate, schema, known), plate, settings, schema)
-    unit = _with(unit, commission.load(wish.params, known)) if wish.params else unit
+    unit = _with(unit, commission.load(wish.params, known, plate.parameters)) if wish.params else unit
     return replace(_in_scheme(wish, unit), refusal=_refusal(unit, native, known))
 
 

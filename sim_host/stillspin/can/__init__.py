@@ -9,6 +9,8 @@ from importlib.resources import files
 import cantools.database
 from cantools.database.can import Database
 
+from stillspin.drive.table import POWERS
+
 NODES = range(1, 32)
 _CRC_POLYNOMIAL = 0x1D
 
@@ -30,8 +32,13 @@ def database(node: int = 1) -> Database:
     return loaded
 
 
-def text_of(faults: Collection[int], node: int = 1) -> str:
-    """A DBC file of a node whose edition of the firmware has these faults.
+def text_of(faults: Collection[int], node: int = 1, scales: tuple[int, int] = (0, 0)) -> str:
+    """A DBC file of a node.
+
+    Args:
+        faults: that its edition of the firmware has.
+        node: its number.
+        scales: its parameters current_scale and voltage_scale; they move what a step of a current or a voltage is.
 
     Raises:
         ValueError: a node that cannot be.
@@ -39,6 +46,10 @@ def text_of(faults: Collection[int], node: int = 1) -> str:
     loaded = database(node)
     fault = loaded.get_message_by_name("STATUS").get_signal_by_name("FAULT")
     fault.choices = OrderedDict((code, name) for code, name in (fault.choices or {}).items() if code in faults)
+    for message in loaded.messages:
+        for signal in message.signals:
+            powers = POWERS.get(signal.unit or "", (0, 0))
+            signal.scale *= 2.0 ** (powers[0] * scales[0] + powers[1] * scales[1])
     return str(loaded.as_dbc_string())
 
 

@@ -62,7 +62,7 @@ class Worlds:
 
     def parameter(self, where: Profile, name: str) -> float:
         """What a parameter is in a profile."""
-        return float(where.parameters.get(name, self.known[name].default))
+        return float(where.parameters.get(name, core.at_scale(self.known, where.parameters)[name].default))
 
     def differs(self, effect: Effect) -> bool:
         """Whether the profile has the effect at all."""

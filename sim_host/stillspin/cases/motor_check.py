@@ -59,7 +59,9 @@ def rules(parameters: Mapping[str, float], native: core.NativeCore) -> Finding:
     """Whether the drive takes the parameters together."""
     broken = motor_limits.conflict(native, parameters)
     if broken:
-        ways = "; or ".join(motor_limits.ways_out(native, core.parameters(native), parameters, broken))
+        ways = "; or ".join(
+            motor_limits.ways_out(native, core.at_scale(core.parameters(native), parameters), parameters, broken)
+        )
         return Finding("drive's rules", False, f"{broken}; {ways}" if ways else broken)
     return Finding("drive's rules", True, "the drive takes the parameters together")
 

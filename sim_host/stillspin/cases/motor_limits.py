@@ -57,8 +57,8 @@ def _bound(entry: Entry, now: float, said: Callable[[float], str]) -> str:
         for _ in range(_HALVINGS):
             middle = (wrong + right) / 2.0
             wrong, right = (middle, right) if said(middle) == broken else (wrong, middle)
-        steps = round(right * 10**entry.decimals, 3)
-        bound = (math.floor(steps) if right < now else math.ceil(steps)) / 10**entry.decimals
+        steps = round(right * 10**entry.places, 3)
+        bound = (math.floor(steps) if right < now else math.ceil(steps)) / 10**entry.places
         if not said(bound):
-            return f"{entry.name} = {now:g}: {word} {bound:.{entry.decimals}f} {entry.unit}".rstrip()
+            return f"{entry.name} = {now:g}: {word} {bound:.{entry.places}f} {entry.unit}".rstrip()
     return ""

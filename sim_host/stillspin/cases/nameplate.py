@@ -6,6 +6,7 @@ before what follows. What is stated nowhere is said: the drive keeps its default
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -43,13 +44,29 @@ FOLLOWING = (
     Following("link_regulation", "link", "source_voltage", 1.35, needed=False),
     Following("link_maximum", "link", "source_voltage", 1.4, needed=False),
 )
+_SCALES = (
+    (core.CURRENT_SCALE, "current_range", 20.0, 40.0),
+    (core.VOLTAGE_SCALE, "voltage_range", 225.0, 450.0),
+)
+"""Parameters that follow from the board's range: at 0 it is within the two."""
 STATED = ("current_limit", "speed_limit")
 """Parameters that follow from nothing: the motor's file has them."""
 
 
+def scales(plant: core.Plant) -> dict[str, float]:
+    """The powers of two, nearest to none, that bring the sensors' ranges to where the formats expect them."""
+    found = {}
+    for name, key, least, most in _SCALES:
+        value = float(plant.get("adc", {}).get(key, least))
+        scale = max(0, math.ceil(math.log2(value / most))) + min(0, math.floor(math.log2(value / least)))
+        if scale:
+            found[name] = float(scale)
+    return found
+
+
 def following(plant: core.Plant, stated: Mapping[str, float]) -> dict[str, float]:
     """The parameters that follow from what a motor's file states of the plant, and that it does not state itself."""
-    found = {}
+    found = {name: value for name, value in scales(plant).items() if name not in stated}
     for row in FOLLOWING:
         value = plant.get(row.section, {}).get(row.key)
         if value is not None and row.parameter not in stated:

@@ -18,6 +18,8 @@ from stillspin.cases import file_schema, flux_table, nameplate
 from stillspin.entry import Entry, Value
 from stillspin.errors import InputError, did_you_mean
 
+_SCALE_NAMES = (core.CURRENT_SCALE, core.VOLTAGE_SCALE)
+
 
 @dataclass(frozen=True)
 class Profile:
@@ -78,6 +80,7 @@ def load(
     Raises:
         InputError: not found, not TOML, unknown entry, wrong type or out of range.
     """
+    known = core.at_scale(known, _scales(motor, name_or_path))
     machine = _read("motor", motor, schema, known)
     effects = _read("profile", name_or_path, schema, known)
     follows = nameplate.following(machine.plant, machine.parameters)
@@ -99,6 +102,20 @@ def say_not_stated(chosen: Profile) -> None:
     """What the motor's file leaves out, for the terminal."""
     for words in chosen.not_stated:
         print(f"stillspin: motor {chosen.motor}: {words}", file=sys.stderr)
+
+
+def _scales(motor: str, profile_name: str) -> dict[str, float]:
+    """What the ranges of the board's sensors ask for, or the files state: by which all else in them is read."""
+    found: dict[str, float] = {}
+    for kind, name in (("motors", motor), ("profiles", profile_name)):
+        data = toml_table.read(resources.find(kind, name)).items()
+        adc, stated = (table if isinstance(table := data.get(key), dict) else {} for key in ("adc", "parameters"))
+        ranges: core.Plant = {
+            "adc": {key: each for key, each in adc.items() if isinstance(each, int | float) and each > 0}
+        }
+        said = {**nameplate.scales(ranges), **stated} if kind == "motors" else stated
+        found |= {key: value for key in _SCALE_NAMES if isinstance(value := said.get(key), int | float)}
+    return found
 
 
 def _read(kind: str, name: str, schema: core.Schema, known: Mapping[str, Entry]) -> _File:
@@ -136,13 +153,31 @@ def split_assignment(word: str) -> tuple[str, str]:
     return name, value
 
 
-def changes(words: Iterable[str], schema: core.Schema, known: Mapping[str, Entry]) -> Changes:
+def _stated_scales(words: Iterable[str], known: Mapping[str, Entry]) -> dict[str, float]:
+    pairs = [split_assignment(word) for word in words]
+    return {name: float(known[name].read(text, f"--set {name}")) for name, text in pairs if name in _SCALE_NAMES}
+
+
+def changes(
+    words: Iterable[str],
+    schema: core.Schema,
+    known: Mapping[str, Entry],
+    told: Mapping[str, float] | None = None,
+) -> Changes:
     """Sort the words of `--set` into plant entries and firmware parameters, checked.
+
+    Args:
+        words: as they were given.
+        schema: what the plant can be told.
+        known: the firmware's parameters.
+        told: what the drive is told before, of which its scales count.
 
     Raises:
         InputError: malformed, unknown, wrong type, another unit, or out of range.
     """
     result = Changes()
+    words = list(words)
+    known = core.at_scale(known, {**(told or {}), **_stated_scales(words, known)})
     for word in words:
         name, text = split_assignment(word)
         where = f"--set {name}"

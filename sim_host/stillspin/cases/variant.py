@@ -118,15 +118,16 @@ class Scheme(Variant):
         """
         if profile.motor != self.motor:
             raise InputError(f"--scheme {self.mark}: is of motor {self.motor}, and this is motor {profile.motor}")
-        return replace(profile, parameters={**profile.parameters, **self.checked(known)})
+        return replace(profile, parameters={**profile.parameters, **self.checked(known, profile.parameters)})
 
-    def checked(self, known: Mapping[str, Entry]) -> dict[str, float]:
-        """Its parameters as numbers.
+    def checked(self, known: Mapping[str, Entry], told: Mapping[str, float] | None = None) -> dict[str, float]:
+        """Its parameters as numbers, for a drive that is told others before.
 
         Raises:
             InputError: the drive has no such parameter or value.
         """
         where = f"scheme {self.mark}"
+        known = core.at_scale(known, told or {})
         return {name: core.parameter(known, name, value, f"{where}: {name}") for name, value in self.parameters.items()}
 
 

@@ -102,9 +102,9 @@ def board(
     schema, known = core.plant_schema(native), core.parameters(native)
     chosen = profile.load(profile_name, schema, known, motor)
     profile.say_not_stated(chosen)
-    changes = profile.changes(change or [], schema, known)
+    changes = profile.changes(change or [], schema, known, chosen.parameters)
     if params:
-        chosen = replace(chosen, parameters={**chosen.parameters, **commission.load(params, known)})
+        chosen = replace(chosen, parameters={**chosen.parameters, **commission.load(params, known, chosen.parameters)})
         changes.words.append(f"--params {params.name}")
     if scheme:
         chosen = variant.scheme(scheme).told(chosen, known)

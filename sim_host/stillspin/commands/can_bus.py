@@ -63,7 +63,8 @@ def bus(
         raise InputError(f"address '{where}': must be a CAN bus, such as can:slcan:/dev/ttyACM0")
     if export:
         with opened(where) as drive:
-            parameter_file.write(export, text_of(drive.has_faults(), wanted.options["node"]))
+            scales = round(drive.get("current_scale")), round(drive.get("voltage_scale"))
+            parameter_file.write(export, text_of(drive.has_faults(), wanted.options["node"], scales))
             print(f"node {wanted.options['node']}, {drive.identity.text}; see {export}")
         return
     only = wanted.options["node"] if "node=" in where else None

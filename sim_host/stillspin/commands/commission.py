@@ -36,7 +36,7 @@ def commission(
     schema, known = core.plant_schema(native), core.parameters(native)
     chosen = profile.load(profile_name, schema, known, motor)
     profile.say_not_stated(chosen)
-    changes = profile.changes(change or [], schema, known)
+    changes = profile.changes(change or [], schema, known, chosen.parameters)
     commissioning.check_target(out)
     with PhaseBar(Console(stderr=True)) as bar:
         result = commissioning.run(native, chosen, changes, seed, bar.show)

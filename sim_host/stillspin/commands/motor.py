@@ -60,6 +60,7 @@ def check(
     native = core.load()
     schema, known = core.plant_schema(native), core.parameters(native)
     chosen = profile.load(profile_name, schema, known, file, checked=False)
+    known = core.at_scale(known, chosen.parameters)
     found = motor_check.findings(Motor(chosen, schema, known), native)
     for words in chosen.not_stated:
         print(f"note   {words}")
@@ -115,7 +116,7 @@ def new(
     parameter_file.write(file, questions.file_text(file.stem, answers))
     stated = questions.stated(answers)
     told = {**nameplate.following(questions.plant(answers), stated), **stated}
-    print(motor_defaults.words(core.known_parameters().values(), told))
+    print(motor_defaults.words(core.at_scale(core.known_parameters(), told).values(), told))
     print(f"{file} written; what will work with it: {called()} motor check {file}")
 
 

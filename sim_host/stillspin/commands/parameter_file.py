@@ -48,8 +48,13 @@ def write(path: Path, content: str) -> None:
         raise InputError(f"{path}: cannot be written ({error.strerror})") from error
 
 
-def read(path: Path, table: Table) -> dict[str, float]:
+def read(path: Path, table: Table, now: Mapping[str, float]) -> dict[str, float]:
     """The values of a file, every one checked against the drive's table.
+
+    Args:
+        path: of the file.
+        table: of the drive.
+        now: its values, of which the scales count where the file does not say them.
 
     Raises:
         InputError: unreadable, an unknown parameter, or a value that it does not take.
@@ -59,6 +64,8 @@ def read(path: Path, table: Table) -> dict[str, float]:
     document.finish()
     if not values:
         raise InputError(f"{path}: has no [parameters]")
+    stated = {name: float(value) for name, value in values.items() if isinstance(value, int | float)}
+    table = table.with_scales(now, stated)
     found = {}
     for name, value in values.items():
         try:

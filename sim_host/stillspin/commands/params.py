@@ -83,7 +83,7 @@ def _side(name: str, drive: Drive) -> dict[str, float]:
         return drive.parameters()
     if name == DEFAULTS:
         return {parameter.name: parameter.initial for parameter in drive.table.parameters}
-    return parameter_file.read(Path(name), drive.table)
+    return parameter_file.read(Path(name), drive.table, drive.parameters())
 
 
 @app.command()
@@ -95,7 +95,8 @@ def load(
 ) -> None:
     """Put the values of a file into the drive; all are checked before the first is sent."""
     with opened(where) as drive:
-        wanted = parameter_file.read(file, drive.table)
+        wanted = parameter_file.read(file, drive.table, drive.parameters())
+        drive.set_scales(wanted)
         rows = parameter_file.differences(drive.parameters(), wanted, drive.table, wanted)
         complaints = transfer(drive, rows)
         tables.differences(rows, "before", str(file))

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import struct
 import warnings
+from collections.abc import Mapping
 
 from stillspin.drive import values
 from stillspin.drive.describe import unpack
 from stillspin.drive.inspection import Inspection
 from stillspin.drive.protocol import Command, Request
+from stillspin.drive.table import SCALES
 from stillspin.drive.values import ConflictWarning
 
 
@@ -43,7 +45,20 @@ class Adjustment(Inspection):
 
     def change(self, name: str, value: float | str) -> values.Change:
         """As `set`, with the drive's words about a conflict instead of a warning."""
-        return values.change(self._ask, self.table.parameter(name), value)
+        changed = values.change(self._ask, self.table.parameter(name), value)
+        if name in SCALES:
+            self._describe()
+        return changed
+
+    def set_scales(self, wanted: Mapping[str, float]) -> None:
+        """Change the scales, if they are among these values and differ: before all that is then in other steps.
+
+        Raises:
+            RefusedError: the drive says why not.
+        """
+        for name in SCALES:
+            if name in wanted and self.get(name) != wanted[name]:
+                self.change(name, wanted[name])
 
     def parameters(self) -> dict[str, float]:
         """The values of all parameters, by name."""
@@ -63,8 +78,16 @@ class Adjustment(Inspection):
 
     def defaults(self) -> None:
         """Every parameter to its default; not kept until `save`."""
-        self.command(Command.DEFAULTS)
+        self._replace(Command.DEFAULTS)
 
     def load(self) -> None:
         """Every parameter as the store has it."""
-        self.command(Command.LOAD)
+        self._replace(Command.LOAD)
+
+    def _replace(self, command: Command) -> None:
+        """Change all parameters at once, and with the scales the ranges and formats of the table."""
+        here = [name for name in SCALES if self.table.has_parameter(name)]
+        before = [self.get(name) for name in here]
+        self.command(command)
+        if [self.get(name) for name in here] != before:
+            self._describe()

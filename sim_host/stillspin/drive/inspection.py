@@ -43,11 +43,15 @@ class Inspection:
         """The number under which this client holds a motor; 0 before it has one."""
         self._words: dict[tuple[int, int], str] = {}
         try:
-            self.identity = describe.identity(self._ask)
-            self.table: Table = describe.table(self._ask, self.identity, progress)
+            self._describe(progress)
         except BaseException:
             self.link.close()
             raise
+
+    def _describe(self, progress: Callable[[float], None] | None = None) -> None:
+        """Read who the drive is, and its table."""
+        self.identity = describe.identity(self._ask)
+        self.table: Table = describe.table(self._ask, self.identity, progress)
 
     def __enter__(self) -> Self:
         return self
@@ -115,8 +119,12 @@ class Inspection:
                 break
             if age >= raw.total:
                 break
-            kinds = ((Words.FAULT, raw.code), (Words.STATE, raw.state), (Words.REMEDY, raw.code))
-            found.append(Fault.from_raw(raw, *(self.words(*kind) for kind in kinds)))
+            words = (
+                self.words(Words.FAULT, raw.code),
+                self.words(Words.STATE, raw.state),
+                self.words(Words.REMEDY, raw.code),
+            )
+            found.append(Fault.from_raw(raw, words, self.table))
         return found
 
     def signals(self, *names: str) -> dict[str, float]:

@@ -32,8 +32,9 @@ DECIMATION = Range(1, 0xFFFF, whole=True)
 """Control interrupts per record."""
 BEFORE = Range(0, 99.9, "%")
 """Records before the trigger."""
-# Full scale per unit when nothing else is asked for: above everything that the default limits let a drive reach.
-_FULL_SCALE = {"A": 32.0, "V": 512.0, "rpm": 8192.0, "turn": 0.5, "Nm": 64.0, "C": 256.0}
+# Bits of the raw numbers per unit that hold all that the limits let a drive reach, whatever its scales make of that in
+# amperes and volts: a record keeps the upper ones when nothing else is asked for.
+_REACH = {"A": 25, "V": 25, "rpm": 29, "turn": 31, "Nm": 22, "C": 16}
 
 
 @dataclass(frozen=True)
@@ -126,13 +127,12 @@ class Capture(Recording):
 
 def shift(signal: Signal, full_scale: float | None) -> int:
     """Bits to drop so that ±`full_scale` fits a 16-bit record."""
-    scale = full_scale if full_scale is not None else _FULL_SCALE.get(signal.unit)
-    if scale is None:  # numbers of states, bits, shares: as they are, down to 16 bits
-        return max(0, signal.q + 1 - 15)
-    if not scale > 0:
-        raise InputError(f"full scale of {signal.name}: must be above 0, not {scale:g}")
+    if full_scale is None:  # numbers of states, bits, shares: as they are, down to 16 bits
+        return max(0, _REACH.get(signal.unit, signal.q + 1) - 15)
+    if not full_scale > 0:
+        raise InputError(f"full scale of {signal.name}: must be above 0, not {full_scale:g}")
     bits = 0
-    while bits < _SHIFT_MAX and scale * 2**signal.q > (_WORD << bits):
+    while bits < _SHIFT_MAX and full_scale * 2**signal.q > (_WORD << bits):
         bits += 1
     return bits
 

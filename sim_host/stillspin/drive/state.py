@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 from stillspin.counted import counted
 from stillspin.drive.describe import unpack
-from stillspin.drive.table import KNOWN_FRAME, KNOWN_ROTOR
+from stillspin.drive.table import KNOWN_ROTOR, Table
 
 _Q16 = 2**16
-_Q20 = 2**20
 STATUS_FORM = "<IBBHiiBBBBHBBB"
 FAULT_FORM = "<HIBBiiiiB"
 
@@ -119,9 +118,10 @@ class RawFault:
     code: int
     state: int
     speed_q16: int
-    link_voltage_q16: int
-    current_d_q20: int
-    current_q_q20: int
+    link_voltage: int
+    current_d: int
+    current_q: int
+    """With the fractional bits of the signals of these names."""
     known: int
 
     @classmethod
@@ -153,13 +153,15 @@ class Fault:
     speed_known: bool
 
     @classmethod
-    def from_raw(cls, raw: RawFault, cause: str, state: str, remedy: str) -> Fault:
-        """In users' units, with the words for code and state."""
-        known, seen = bool(raw.known & KNOWN_ROTOR), bool(raw.known & KNOWN_FRAME)
-        scale = 1 / _Q20 if seen else math.nan
-        currents = (raw.current_d_q20 * scale, raw.current_q_q20 * scale)
-        speed, link = rpm(raw.speed_q16, known), raw.link_voltage_q16 / _Q16
-        return cls(raw.time_ms / 1e3, cause, state, remedy, speed, link, *currents, raw.code, known)
+    def from_raw(cls, raw: RawFault, words: tuple[str, str, str], table: Table) -> Fault:
+        """In users' units: as the signals of the table have them, with cause, state and remedy in words."""
+        cause, state, remedy = words
+        known = bool(raw.known & KNOWN_ROTOR)
+        link = table.signal("link_voltage").to_user(raw.link_voltage)
+        d = table.signal("current_d").to_user(raw.current_d, raw.known)
+        q = table.signal("current_q").to_user(raw.current_q, raw.known)
+        speed = rpm(raw.speed_q16, known)
+        return cls(raw.time_ms / 1e3, cause, state, remedy, speed, link, d, q, raw.code, known)
 
 
 def rpm(q16: int, known: bool = True) -> float:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from stillspin import core
@@ -15,6 +15,18 @@ from stillspin.quantity import Range
 
 TURN = "turn"
 """Unit of the signals that are binary angles."""
+SCALES = ("current_scale", "voltage_scale")
+"""Parameters that say what an ampere and a volt of the drive's formats are."""
+POWERS = {
+    **dict.fromkeys(("A", "mA", "A/s"), (1, 0)),
+    **dict.fromkeys(("V", "Vs", "mVs"), (0, 1)),
+    **dict.fromkeys(("ohm", "mH"), (-1, 1)),
+    **dict.fromkeys(("Nm", "Nms", "kgm2"), (1, 1)),
+    "A2s2": (2, 0),
+    "%/A": (-1, 0),
+    "A/V": (1, -1),
+}
+"""By unit: how often it has that of a current and that of a voltage in it; as firmware/dictionary/unit_list.h."""
 KNOWN_ROTOR, KNOWN_FRAME, KNOWN_HEAT_SINK = 1, 2, 4
 """What a drive knows: the rotor's angle and speed; the currents in the frame that its control uses; its temperature."""
 KNOWN_ALL = KNOWN_ROTOR | KNOWN_FRAME | KNOWN_HEAT_SINK
@@ -88,6 +100,12 @@ class Parameter:
             InputError: no number, another unit, out of range, or a fraction of what is whole; in words.
         """
         return self._raw(self.range.read(value, self.name))
+
+    def moved(self, steps: tuple[float, float]) -> Parameter:
+        """The same in a drive whose scales are so much larger."""
+        power = POWERS.get(self.unit, (0, 0))
+        up = round(power[0] * steps[0] + power[1] * steps[1])
+        return replace(self, q=self.q - up, decimals=self.decimals + max(0, (9 - 3 * up) // 10 if up < 0 else 0))
 
 
 @dataclass(frozen=True)
@@ -170,6 +188,13 @@ class Table:
             words = f"{kind} '{name}' is not in this edition of the firmware, {self.edition}; {core.LAB} has it"
             return RefusedError(words, StatusCode.EDITION)
         return InputError(f"no {kind} '{name}'{did_you_mean(name, known)}")
+
+    def with_scales(self, now: Mapping[str, float], then: Mapping[str, float]) -> Table:
+        """Formats and ranges of the parameters when the scales among the values `now` become those of `then`."""
+        current, voltage = (then.get(name, now.get(name, 0.0)) - now.get(name, 0.0) for name in SCALES)
+        if not current and not voltage:
+            return self
+        return replace(self, parameters=tuple(each.moved((current, voltage)) for each in self.parameters))
 
     def chosen(self, names: Iterable[str]) -> list[Signal]:
         """The signals of these names, in their order."""

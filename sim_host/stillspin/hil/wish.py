@@ -43,10 +43,12 @@ class Wish:
         def settings(motor: str) -> execute.Settings:
             chosen = profile.load(self.profile, schema, known, motor)
             if self.params:
-                chosen = replace(chosen, parameters={**chosen.parameters, **commission.load(self.params, known)})
+                chosen = replace(
+                    chosen, parameters={**chosen.parameters, **commission.load(self.params, known, chosen.parameters)}
+                )
             if self.scheme:
                 chosen = variant.scheme(self.scheme).told(chosen, known)
-            changes = profile.changes(self.changes, schema, known)
+            changes = profile.changes(self.changes, schema, known, chosen.parameters)
             return execute.Settings(chosen, changes, self.seed, revision())
 
         found = runs.named(self.scenarios, settings, native, check=self.check)

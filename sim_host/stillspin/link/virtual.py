@@ -56,7 +56,7 @@ class VirtualTransport:
         chosen = profile.load(profile_name, schema, known, motor)
         self.name = f"virtual board, motor {chosen.motor}, profile {chosen.name}"
         try:
-            self._board = power(native, chosen, profile.changes(changes or [], schema, known), seed)
+            self._board = power(native, chosen, profile.changes(changes or [], schema, known, chosen.parameters), seed)
         except RuntimeError as error:
             raise InputError(str(error)) from error
         self._pacer = Pacer(speed)

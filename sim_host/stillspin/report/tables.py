@@ -132,7 +132,7 @@ def parameters(entries: Iterable[Entry]) -> None:
     """The firmware's parameters."""
     table = _table("number", "name", "default", "range", "access", "meaning")
     for entry in entries:
-        default = f"{entry.default:.{entry.decimals}f}"
+        default = f"{entry.default:.{entry.places}f}"
         table.add_row(str(entry.number), entry.name, default, entry.range_text, entry.access, Text(entry.help))
     _print(table)
 

@@ -146,8 +146,8 @@ def check_target(path: Path) -> None:
         raise InputError(f"--out {path}: there is no directory {path.parent}")
 
 
-def load(path: Path, known: Mapping[str, Entry]) -> dict[str, float]:
-    """Firmware parameters from a parameter file.
+def load(path: Path, known: Mapping[str, Entry], told: Mapping[str, float] | None = None) -> dict[str, float]:
+    """Firmware parameters from a parameter file, for a drive that is told others before.
 
     Raises:
         InputError: not found, not TOML, an unknown parameter or a value that it does not take.
@@ -157,4 +157,5 @@ def load(path: Path, known: Mapping[str, Entry]) -> dict[str, float]:
     table.finish()
     if not values:
         raise InputError(f"{path}: has no [parameters]")
+    known = core.at_scale(known, {**(told or {}), **values})
     return {name: core.parameter(known, name, value, f"{path}: {name}") for name, value in values.items()}

@@ -121,11 +121,10 @@ def _job(scenario: Scenario, run: Run, settings: Settings, known: _Known) -> Job
         section: {key: core.plant_entry(known.schema, section, key, value, where) for key, value in keys.items()}
         for section, keys in run.plant.items()
     }
-    own = {
-        name: core.parameter(known.parameters, name, value, f"{where}: {name}")
-        for name, value in run.parameters.items()
-    }
-    _check_commands(run, known.parameters, where)
+    told: dict[str, float | str] = {**settings.profile.parameters, **run.parameters, **settings.changes.parameters}
+    entries = core.at_scale(known.parameters, told)
+    own = {name: core.parameter(entries, name, value, f"{where}: {name}") for name, value in run.parameters.items()}
+    _check_commands(run, entries, where)
     given = factors.read(run.factors, known.schema, where)
     grown = factors.multiplied(merged(settings.profile.plant, own_plant), given, known.schema, where)
     plant = merged(grown, settings.changes.plant)
@@ -142,7 +141,7 @@ def _job(scenario: Scenario, run: Run, settings: Settings, known: _Known) -> Job
         "motor": scenario.motor,
         "plant": plant,
         "machine": _machine(plant, known.schema),
-        "observer": {name: parameters.get(name, known.parameters[name].default) for name in _OBSERVER},
+        "observer": {name: parameters.get(name, entries[name].default) for name in _OBSERVER},
         "parameters": parameters,
         "not_stated": list(settings.profile.not_stated),
         "load": run.load,

@@ -68,7 +68,7 @@ def carry_out(scenario: Scenario, options: Options) -> Explanation:
         known,
     )
     listed = [item for item in by_mark(effects.load(schema, known), options.only, "effect") if worlds.differs(item)]
-    told = commission.load(options.params, known) if options.params else None
+    told = commission.load(options.params, known, worlds.own.parameters) if options.params else None
     execute.prepare(scenario, _settings(worlds.own, options.seed, told or {}), native)  # complains at once
     cases = _cases(worlds, listed, told, options)
     with output.fresh_directory(options.out) as directory:

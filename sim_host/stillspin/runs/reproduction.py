@@ -113,8 +113,8 @@ def carry_out(scenarios: Sequence[Scenario], options: Options) -> Reproduction:
 def _own(native: NativeCore, options: Options, motor: str) -> Settings:
     """Settings with the profile on a motor as it is."""
     schema, known = core.plant_schema(native), core.parameters(native)
-    changes = profile.changes(options.changes, schema, known)
     chosen = profile.load(options.profile, schema, known, motor)
+    changes = profile.changes(options.changes, schema, known, chosen.parameters)
     return Settings(chosen, changes, options.seed, revision(), firmware=firmware())
 
 
@@ -157,7 +157,8 @@ def _commissioned(native: NativeCore, settings: Settings, file: Path, screen: Co
 
 
 def _with_file(settings: Settings, file: Path, native: NativeCore, origin: str) -> Settings:
-    told = {**settings.profile.parameters, **commission.load(file, core.parameters(native))}
+    plate = settings.profile.parameters
+    told = {**plate, **commission.load(file, core.parameters(native), plate)}
     return replace(settings, profile=replace(settings.profile, parameters=told), parameters_from=origin)
 
 

@@ -145,7 +145,7 @@ def saturation_map(plant: Plant, schema: Schema) -> dict[str, float]:
 def sustained(common: Bench, case: Case) -> float:
     """The speed (rpm) that the machine of a case can hold without load: its EMF, weakened as far as the drive may."""
     native = core.load()
-    schema, known = core.plant_schema(native), core.parameters(native)
+    schema, known = core.plant_schema(native), core.at_scale(core.parameters(native), common.parameters)
 
     def nominal(section: str, key: str) -> float:
         return float(common.plant.get(section, {}).get(key, schema[section][key].default))

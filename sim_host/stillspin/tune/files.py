@@ -50,9 +50,10 @@ def load(bench: Workbench, name: str, text: str) -> dict[str, Any]:
         path = Path(directory) / (Path(name).name or "file")
         path.write_text(text, encoding="utf-8")
         try:
-            wanted = parameter_file.read(path, bench.drive.table)
+            wanted = parameter_file.read(path, bench.drive.table, bench.drive.parameters())
         except InputError as error:
             raise InputError(str(error).replace(f"{directory}/", "")) from None
+    bench.drive.set_scales(wanted)
     rows = parameter_file.differences(bench.drive.parameters(), wanted, bench.drive.table, wanted)
     complaints = transfer(bench.drive, rows)
     values = bench.drive.parameters()

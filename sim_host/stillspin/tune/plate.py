@@ -73,9 +73,12 @@ def check(bench: Workbench, typed: Mapping[str, Any]) -> Message:
     answers = _answers(typed, now)
     follows = _following(answers, now, bench.drive.table)
     machine = questions.plant(answers, now["link_full_scale"])
-    found = [_ranges(follows, bench.drive.table), *motor_check.physics(_Asked(machine, now | follows))]
+    found = [
+        _ranges(follows, bench.drive.table.with_scales(now, follows)),
+        *motor_check.physics(_Asked(machine, now | follows)),
+    ]
     tried, missing = _elsewhere(answers, now | follows) if found[0].works else ([], "")
-    rows = parameter_file.differences(now, follows, bench.drive.table, follows)
+    rows = parameter_file.differences(now, follows, bench.drive.table.with_scales(now, follows), follows)
     return {
         "findings": [asdict(finding) for finding in (*found, *tried)],
         "missing": missing,
@@ -95,7 +98,8 @@ def use(bench: Workbench, typed: Mapping[str, Any]) -> Message:
     drive = bench.drive
     now = drive.parameters()
     follows = _following(_answers(typed, now), now, drive.table)
-    complaints = transfer(drive, parameter_file.differences(now, follows, drive.table, follows))
+    drive.set_scales(follows)
+    complaints = transfer(drive, parameter_file.differences(drive.parameters(), follows, drive.table, follows))
     values = drive.parameters()
     bench.streamer.learn(values)
     return {"values": values, "complaints": complaints}
