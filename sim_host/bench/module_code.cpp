@@ -172,6 +172,15 @@ void replace_flash_library(Self self, std::uint32_t erase, std::uint32_t program
   self.board().executing().replace_flash_library({erase, program, verify, scale});
 }
 
+// By address: reads, writes, and of the first of them the instruction and the cycle.
+nb::dict unmodelled(Self self) {
+  nb::dict found;
+  for (const auto& [address, use] : self.board().executing().unmodelled().uses()) {
+    found[nb::int_(address)] = nb::make_tuple(use.reads, use.writes, use.first.place, use.first.cycle);
+  }
+  return found;
+}
+
 }  // namespace
 
 void bind_code(nb::class_<PythonBoard>& board) {
@@ -199,6 +208,10 @@ void bind_code(nb::class_<PythonBoard>& board) {
           nb::arg("vector"))
       .def("tape", &tape, nb::arg("given"), nb::arg("inputs") = std::vector<std::vector<Change>>())
       .def("taped", &taped)
+      .def(
+          "load_rom", [](Self self, const chip::CodeBlocks& blocks) { self.board().executing().load_rom(blocks); },
+          nb::arg("blocks"))
+      .def("unmodelled", &unmodelled)
       .def("replace_flash_library", &replace_flash_library, nb::arg("erase"), nb::arg("program"), nb::arg("verify"),
            nb::arg("scale"));
 }

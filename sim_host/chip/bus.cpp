@@ -179,9 +179,10 @@ bool Core::gate_stops(bool clocked, std::uint32_t address) {
   return true;
 }
 
-void Core::note_unmodelled(std::uint32_t address) {
+void Core::note_unmodelled(std::uint32_t address, bool write) {
   ++statistics_.unmodelled_accesses;
   statistics_.last_unmodelled_address = address;
+  if (code_ != nullptr) code_->note_unmodelled(address, write);
 }
 
 // ---- reads ---------------------------------------------------------------------------------------------
@@ -232,7 +233,7 @@ std::uint16_t Core::read_epwm(std::uint32_t address) {
 
 std::uint16_t Core::read_sci(std::uint32_t address) {
   if (!is_sci(address)) {
-    note_unmodelled(address);
+    note_unmodelled(address, false);
     return 0;
   }
   return gate_stops(system_.sci_clock(), address) ? 0
@@ -254,6 +255,7 @@ std::uint16_t Core::read_system(std::uint16_t offset) const {
 std::uint16_t Core::inspect(std::uint32_t address) {
   if (code_ != nullptr && CodeCpu::is_vector(address)) return code_->vector_word(address);
   if (device_at(address) == Device::kNone) return inspect_memory(address);
+  if (device_at(address) == Device::kSci && !is_sci(address)) return 0;
   const Statistics before = statistics_;
   const bool wide = device_at(address) == Device::kCan;
   const std::uint16_t value =
@@ -349,7 +351,7 @@ void Core::write_eqep1(std::uint32_t address, std::uint16_t value) {
 
 void Core::write_sci(std::uint32_t address, std::uint16_t value) {
   if (!is_sci(address)) {
-    note_unmodelled(address);
+    note_unmodelled(address, true);
     return;
   }
   if (gate_stops(system_.sci_clock(), address)) return;

@@ -41,17 +41,17 @@ Tick Core::memory_cycles(std::uint32_t address) const {
 
 std::uint16_t Core::read_memory(std::uint32_t address) {
   if (const auto word = memory_.read(address)) return *word;
-  note_unmodelled(address);
+  note_unmodelled(address, false);
   return 0;
 }
 
 void Core::write_memory(std::uint32_t address, std::uint16_t value) {
-  if (!memory_.write(address, value)) note_unmodelled(address);
+  if (!memory_.write(address, value)) note_unmodelled(address, true);
 }
 
 std::uint16_t Core::inspect_memory(std::uint32_t address) {
   if (FlashArray::owns(address)) return memory_.flash().read(address);
-  return memory_.ram(address).value_or(0);
+  return memory_.ram(address).value_or(memory_.rom(address).value_or(0));
 }
 
 void Core::jump(std::uint32_t entry) {
@@ -72,6 +72,11 @@ c28x::Core& Core::execute_code() {
 void Core::replace_flash_library(const FlashLibrary& places) {
   execute_code();
   code_->replace_flash_library(places);
+}
+
+const Unmodelled& Core::unmodelled() {
+  execute_code();
+  return code_->unmodelled();
 }
 
 void Core::pass(Tick ticks) {

@@ -7,6 +7,21 @@
 #include "sim_host/chip/memory.hpp"
 
 namespace stillspin::chip {
+namespace {
+
+void put(Memory& memory, const CodeBlocks& blocks, bool (Memory::*load)(std::uint32_t, std::uint16_t),
+         const char* missing) {
+  for (const auto& [first, words] : blocks) {
+    for (std::size_t k = 0; k < words.size(); ++k) {
+      const auto address = static_cast<std::uint32_t>(first + k);
+      if (!(memory.*load)(address, words[k])) {
+        throw std::invalid_argument(std::string("the chip has ") + missing + " at address " + std::to_string(address));
+      }
+    }
+  }
+}
+
+}  // namespace
 
 Chip::Chip(World& world, Firmware firmware) : core_(std::make_unique<Core>(world, firmware)) {}
 Chip::~Chip() = default;
@@ -30,16 +45,9 @@ void Chip::raise_interrupt(unsigned vector) {
   if (core_->raise_from_outside(vector)) return;
   throw std::invalid_argument("no interrupt line has vector " + std::to_string(vector) + ": 13, 14, 32 to 127");
 }
-void Chip::load(const CodeBlocks& blocks) {
-  for (const auto& [first, words] : blocks) {
-    for (std::size_t k = 0; k < words.size(); ++k) {
-      const auto address = static_cast<std::uint32_t>(first + k);
-      if (!core_->memory().load(address, words[k])) {
-        throw std::invalid_argument("the chip has neither flash nor RAM at address " + std::to_string(address));
-      }
-    }
-  }
-}
+void Chip::load(const CodeBlocks& blocks) { put(core_->memory(), blocks, &Memory::load, "neither flash nor RAM"); }
+void Chip::load_rom(const CodeBlocks& blocks) { put(core_->memory(), blocks, &Memory::load_rom, "no boot ROM"); }
+const Unmodelled& Chip::unmodelled() const { return core_->unmodelled(); }
 Memory& Chip::memory() { return core_->memory(); }
 std::uint16_t Chip::inspect(std::uint32_t address) { return core_->inspect(address); }
 

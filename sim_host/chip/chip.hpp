@@ -30,6 +30,7 @@
 
 #include "sim_host/chip/code_flash_library.hpp"
 #include "sim_host/chip/tape.hpp"
+#include "sim_host/chip/unmodelled.hpp"
 #include "sim_host/chip/world.hpp"
 
 namespace stillspin::c28x {
@@ -134,6 +135,10 @@ class Chip {
   void raise_interrupt(unsigned vector);
   /// Words by address into flash and RAM; std::invalid_argument where there is none.
   void load(const CodeBlocks& blocks);
+  /// The same into the boot ROM, of which the model has nothing but the loaders and the vectors.
+  void load_rom(const CodeBlocks& blocks);
+  /// For a chip that executes code: what the program accessed that is not modelled.
+  const Unmodelled& unmodelled() const;
 
   /// RAM, security, and the flash, whose cells outlive resets.
   Memory& memory();

@@ -16,6 +16,8 @@ constexpr std::uint32_t kFrames = 0x6000;        // peripheral frames 1 and 2
 constexpr std::uint32_t kFramesWords = 0x2000;
 constexpr std::uint32_t kSecondMapping = 0x3F0000;
 constexpr unsigned kFlashBlock = 0x80;
+constexpr unsigned kRomBlock = 0x40;
+constexpr std::uint32_t kRomTimed = 0xC00;  // words; the vectors behind are in an interrupt's cycles
 constexpr unsigned kPieLines = 12;
 
 struct Block {
@@ -50,6 +52,10 @@ void CodeCpu::map() {
   cpu_.map(kFlashStart, kFlashEnd - kFlashStart, chip_.memory_.flash().words().data(), false);
   flash_.block = kFlashBlock;
   cpu_.set_region(kFlashStart, kFlashEnd - kFlashStart, flash_);
+  rom_.block = kRomBlock;
+  rom_.read_waits = 1;
+  rom_.fetch_first = rom_.fetch_next = 2;
+  cpu_.set_region(kBootRom, kRomTimed, rom_);
   frames_.ordered = true;
   cpu_.set_region(kFrames, kFramesWords, frames_);
 }
@@ -165,17 +171,23 @@ void CodeCpu::at_the_bus(Access access) {
   cpu_.yield();
 }
 
+bool CodeCpu::is_in_rom(std::uint32_t address) const {
+  return address >= kBootRom && (address >= kRomVectors || chip_.memory_.rom(address));
+}
+
 std::uint16_t CodeCpu::read(std::uint32_t address) {
   if (is_vector(address)) return vectors_[address - kVectors];
-  if (address >= kRomVectors)
-    return address % 2 == 0 ? static_cast<std::uint16_t>(kRomTargets + address - kRomVectors) : 0;
+  if (is_in_rom(address)) {
+    const std::uint32_t target = address % 2 == 0 ? kRomTargets + address - kRomVectors : 0;
+    return chip_.memory_.rom(address).value_or(static_cast<std::uint16_t>(target));
+  }
   std::uint16_t value = 0;
   at_the_bus([&] { value = chip_.read16(address); });
   return value;
 }
 
 std::uint32_t CodeCpu::read_pair(std::uint32_t address) {
-  if (is_vector(address) || address >= kRomVectors) return Bus::read_pair(address);
+  if (is_vector(address) || is_in_rom(address)) return Bus::read_pair(address);
   std::uint32_t value = 0;
   at_the_bus([&] { value = chip_.read32(address); });
   return value;

@@ -5,8 +5,8 @@
 // access, and at the latest in the instruction in whose time they fall; interrupts are seen between instructions. The
 // flash's waits are those of FBANKWAIT and FOPT, an interrupt takes 14 cycles from the flag.
 //
-// Not modelled: memory that the security module keeps from code that runs elsewhere, stuck bits of RAM, the tables and
-// the code of the boot ROM (its vectors are there), a program that is told to fail.
+// Not modelled: memory that the security module keeps from code that runs elsewhere, stuck bits of RAM, a program that
+// is told to fail. Of the boot ROM there are the vectors, and what Memory::load_rom was given.
 
 #ifndef STILLSPIN_SIM_HOST_CHIP_CODE_CPU_HPP
 #define STILLSPIN_SIM_HOST_CHIP_CODE_CPU_HPP
@@ -16,6 +16,7 @@
 
 #include "sim_host/chip/c28x/core.hpp"
 #include "sim_host/chip/code_flash_library.hpp"
+#include "sim_host/chip/unmodelled.hpp"
 #include "sim_host/chip/world.hpp"
 
 namespace stillspin::chip {
@@ -35,6 +36,13 @@ class CodeCpu final : private c28x::Bus {
 
   /// Carries out TI's flash library on the chip's cells where the program has it.
   void replace_flash_library(const FlashLibrary& places);
+
+  /// An access of the program for which the chip has neither register nor memory. Fetches are none: what runs there is
+  /// told as a program that ran away.
+  void note_unmodelled(std::uint32_t address, bool write) {
+    if (address - cpu_.r.pc > 1) unmodelled_.note(address, write, {cpu_.executing(), cpu_.cycles});
+  }
+  const Unmodelled& unmodelled() const { return unmodelled_; }
 
   /// The table of vectors in the PIE's RAM, which is no register of the chip's.
   static bool is_vector(std::uint32_t address) { return address - kVectors < 0x100; }
@@ -56,6 +64,7 @@ class CodeCpu final : private c28x::Bus {
   void sleep();
   void note_passed(Tick begin);
   void halt();
+  bool is_in_rom(std::uint32_t address) const;
 
   static constexpr std::uint32_t kVectors = 0x0D00;
 
@@ -65,7 +74,8 @@ class CodeCpu final : private c28x::Bus {
   std::uint64_t settled_ = 0;  // the cycle at which the chip's time stands
   std::array<std::uint16_t, 256> vectors_{};
   std::array<c28x::Region, 5> ram_;
-  c28x::Region flash_, frames_;
+  c28x::Region flash_, frames_, rom_;
+  Unmodelled unmodelled_;
 };
 
 }  // namespace stillspin::chip

@@ -68,6 +68,7 @@ class Core final : public ChipServices {
   void on_jump(Chip::Jump jump) { jump_ = std::move(jump); }
   c28x::Core& execute_code();
   void replace_flash_library(const FlashLibrary& places);
+  const Unmodelled& unmodelled();
   Tape& tape() {
     if (tape_ == nullptr) tape_ = std::make_unique<Tape>();
     return *tape_;
@@ -190,7 +191,7 @@ class Core final : public ChipServices {
   void bus_write(std::uint32_t address, std::uint16_t value);
   bool protection_stops(std::uint32_t address);
   bool gate_stops(bool clocked, std::uint32_t address);
-  void note_unmodelled(std::uint32_t address);
+  void note_unmodelled(std::uint32_t address, bool write);
   std::uint16_t read_identity(std::uint32_t address) const;
   void write_system(std::uint16_t offset, std::uint16_t value);
   std::uint16_t read_system(std::uint16_t offset) const;

@@ -48,7 +48,7 @@ std::optional<std::uint16_t> Memory::read(std::uint32_t address) {
   if (address >= kOtpStart && address < kOtpEnd) return locked_ ? 0 : kErased;
   const std::uint32_t low = fold(address);
   const auto index = ram_index(low);
-  if (!index) return std::nullopt;
+  if (!index) return rom(address);
   if (locked_ && secured(low)) return std::uint16_t{0};
   return *index == broken_ ? static_cast<std::uint16_t>(ram_[*index] | stuck_) : ram_[*index];
 }
@@ -77,6 +77,18 @@ bool Memory::load(std::uint32_t address, std::uint16_t word) {
   if (!FlashArray::owns(address) && !index) return false;
   (index ? ram_[*index] : flash_.words()[address - kFlashStart]) = word;
   return true;
+}
+
+bool Memory::load_rom(std::uint32_t address, std::uint16_t word) {
+  if (address - kBootRom >= kBootRomWords) return false;
+  rom_.resize(kBootRomWords);
+  rom_[address - kBootRom] = word;
+  return true;
+}
+
+std::optional<std::uint16_t> Memory::rom(std::uint32_t address) const {
+  const std::uint32_t index = address - kBootRom;
+  return index < rom_.size() ? rom_[index] : std::nullopt;
 }
 
 std::uint16_t* Memory::ram_words(std::uint32_t address) { return ram_.data() + ram_index(fold(address)).value(); }

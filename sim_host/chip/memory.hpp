@@ -13,10 +13,14 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "sim_host/chip/flash_array.hpp"
 
 namespace stillspin::chip {
+
+constexpr std::uint32_t kBootRom = 0x3FF000;
+constexpr std::uint32_t kBootRomWords = 0x1000;
 
 class Memory {
  public:
@@ -40,6 +44,10 @@ class Memory {
   std::optional<std::uint16_t> ram(std::uint32_t address) const;
   /// Puts a word into flash or RAM as a probe does, whatever is locked. False when there is neither.
   bool load(std::uint32_t address, std::uint16_t word);
+  /// A word of the boot ROM, which is no part of the model: tables and code of whoever has them. False outside of it.
+  bool load_rom(std::uint32_t address, std::uint16_t word);
+  /// That word; nothing where none was given.
+  std::optional<std::uint16_t> rom(std::uint32_t address) const;
   /// The words of RAM from an address of RAM on, up to the end of M1 or of H0.
   std::uint16_t* ram_words(std::uint32_t address);
 
@@ -50,6 +58,7 @@ class Memory {
 
   FlashArray flash_;
   std::array<std::uint16_t, kRamWords> ram_{};
+  std::vector<std::optional<std::uint16_t>> rom_;  // empty until something is loaded
   std::array<std::uint16_t, kPasswordWords> keys_{};
   std::uint32_t broken_ = kRamWords;  // index
   std::uint16_t stuck_ = 0;

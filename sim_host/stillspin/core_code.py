@@ -9,6 +9,8 @@ Spent = tuple[int, int, int, int]
 Interrupt = tuple[int, int]
 """Vector and routine."""
 
+Use = tuple[int, int, int, int]
+"""Reads, writes, and of the first of them the instruction's address and the cycle."""
 
 Change = tuple[int, int, int]
 """Of an input: samples before, looks at it since the last of them, value from then on."""
@@ -92,6 +94,14 @@ class NativeCode(Protocol):
         Codes; writes: samples before, address, value, address behind the instruction (0 of the firmware); changes of
         pins 0 to 15, 16 to 31 and 32 to 34, of the active trip inputs and of the encoder's edges.
         """
+        ...
+
+    def load_rom(self, blocks: list[tuple[int, list[int]]]) -> None:
+        """Words of the boot ROM, of which the model has vectors and loaders alone; ValueError outside of it."""
+        ...
+
+    def unmodelled(self) -> dict[int, Use]:
+        """What the program accessed that the chip of the model has not, by address; 8192 addresses at most."""
         ...
 
     def replace_flash_library(self, erase: int, program: int, verify: int, scale: int) -> None:

@@ -57,6 +57,16 @@ def by_mark(items: Sequence[Choice], marks: Sequence[str], kind: str) -> list[Ch
 ImageArgument = Annotated[
     Path, typer.Argument(help="An .out file of cl2000 (COFF or ELF), Intel hex or a boot stream.")
 ]
+RomOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--rom",
+        metavar="FILE",
+        help="Words of the boot ROM for the image, such as TI's IQmathTables: a dump from 0x3FF000 on, or a linked "
+        "file that has them there.",
+    ),
+]
+NEEDS_IMAGE = "--rom: goes with --image FILE alone; the firmware on this computer reads no boot ROM"
 RunImageOption = Annotated[
     Path | None,
     typer.Option(

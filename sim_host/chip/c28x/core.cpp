@@ -42,6 +42,14 @@ const Instruction& Core::fetch(std::uint32_t address) {
   return kept = decode(address, word0, MappedMemory::read16(address + 1));
 }
 
+std::uint32_t Core::executing() const {
+  for (const unsigned words : {1U, 2U}) {
+    const Instruction& before = decoded_[(r.pc - words) % kDecoded];
+    if (before.address == r.pc - words && before.words == words) return before.address;
+  }
+  return r.pc;
+}
+
 void Core::execute(const Instruction& i) {
   if (profile_ == nullptr) return carry_out(i);
   const Spent before = spent();

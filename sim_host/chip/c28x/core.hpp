@@ -47,6 +47,9 @@ class Core : public MappedMemory, public Timing {
     return *watch_;
   }
 
+  /// The address of the instruction that is being executed, for the bus; at the entry into an interrupt, and in a jump
+  /// that goes on elsewhere, the program counter may be all that is known.
+  std::uint32_t executing() const;
   /// Ends `run` after the instruction that is being executed; for the bus.
   void yield() { until_ = 0; }
   /// One instruction, or the entry into one interrupt.

@@ -16,11 +16,13 @@ from stillspin.errors import InputError
 from stillspin.image import opened
 from stillspin.image.gdb import Remote
 from stillspin.options import (
+    NEEDS_IMAGE,
     ChangeOption,
     MotorOption,
     PaceOption,
     ParamsOption,
     ProfileOption,
+    RomOption,
     SchemeOption,
     SeedOption,
     number,
@@ -80,6 +82,7 @@ def board(
             "ELF), Intel hex or a boot stream.",
         ),
     ] = None,
+    rom: RomOption = None,
     gdb: Annotated[
         int | None,
         typer.Option(
@@ -96,6 +99,8 @@ def board(
     """Run a virtual board in real time; its serial port is a pseudo-terminal. Ctrl-C switches it off."""
     if image and (params or change or scheme):
         raise InputError("--image: only --profile, --motor and --seed go with it; the program has its own parameters")
+    if rom and not image:
+        raise InputError(NEEDS_IMAGE)
     if gdb is not None and not image:
         raise InputError("--gdb: goes with --image FILE alone; the firmware on this computer has gdb itself")
     native = core.load()
@@ -114,7 +119,7 @@ def board(
     )
     if image:
         title += f", executes {image.name}"
-    program = opened.read(image) if image else None
+    program = opened.read(image, rom) if image else None
     if program:
         powered = opened.power_with(native, program, chosen, seed)
     else:

@@ -22,6 +22,7 @@ from stillspin.exit_codes import ExitCode
 from stillspin.image import opened
 from stillspin.image.opened import Image
 from stillspin.options import (
+    NEEDS_IMAGE,
     ChangeOption,
     ClusterOption,
     CommissionOption,
@@ -29,6 +30,7 @@ from stillspin.options import (
     OtherMotorOption,
     ParamsOption,
     ProfileOption,
+    RomOption,
     RunImageOption,
     SchemeOption,
     SeedOption,
@@ -74,11 +76,13 @@ def _carry_out(scenarios: Sequence[Scenario], options: Options, verdicts: junit.
         raise typer.Exit(ExitCode.SHORT)
 
 
-def _image(file: Path | None) -> Image | None:
+def _image(file: Path | None, rom: Path | None) -> Image | None:
     """What is to be executed; it is said before anything runs when it cannot be."""
     if file is None:
+        if rom:
+            raise InputError(NEEDS_IMAGE)
         return None
-    image = opened.read(file)
+    image = opened.read(file, rom)
     blocks_of(image.program, str(file))
     return image
 
@@ -97,6 +101,7 @@ def run(
     ] = None,
     no_plots: Annotated[bool, typer.Option("--no-plots", help="Write no plots.")] = False,
     image: RunImageOption = None,
+    rom: RomOption = None,
 ) -> None:
     """Run one scenario: figures of merit, plots, and a Parquet file per run."""
     chosen = _scenario(scenario)
@@ -111,7 +116,7 @@ def run(
             draw=not no_plots,
             params=params,
             scheme=scheme,
-            image=_image(image),
+            image=_image(image, rom),
         ),
     )
 
@@ -156,6 +161,7 @@ def reproduce(
         ),
     ] = True,
     image: RunImageOption = None,
+    rom: RomOption = None,
     junit_file: JunitOption = None,
 ) -> None:
     """Commission the drive, run scenarios in parallel and write report.html and metrics.json.
@@ -180,7 +186,7 @@ def reproduce(
         commission=commission_first,
         paper_scheme=paper_scheme,
         nameplate=nameplate,
-        image=_image(image),
+        image=_image(image, rom),
         told=told,
     )
     with verdicts:

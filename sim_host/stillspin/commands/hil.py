@@ -18,6 +18,7 @@ from stillspin.commands.connection import DriveOption, wanted
 from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
+from stillspin.flash.files import read_boot_rom
 from stillspin.hil import Difference, boards, built, campaign, runs
 from stillspin.hil.boards import Board
 from stillspin.hil.results import Results, Row, begun
@@ -25,6 +26,7 @@ from stillspin.hil.runs import LoopRun
 from stillspin.hil.wish import Wish
 from stillspin.link import address
 from stillspin.link.errors import NoAnswerError
+from stillspin.options import NEEDS_IMAGE, RomOption
 from stillspin.report import junit, tables
 from stillspin.report.progress import Counter, PhaseBar
 from stillspin.revision import revision
@@ -61,6 +63,7 @@ def hil(
         Path | None,
         typer.Option("--image", metavar="FILE", help="A virtual board that executes this image of the C28x."),
     ] = None,
+    rom: RomOption = None,
     check: Annotated[
         bool, typer.Option("--check", help=f"Only the start and the first {runs.CHECK:g} s of every run.")
     ] = False,
@@ -79,7 +82,9 @@ def hil(
     Exit status 0 when every run is identical, 4 when one differs.
     """
     of = revision()
-    board = _executing(context, image, port or can or where) if image else _address(port, can, where)
+    if rom and not image:
+        raise InputError(NEEDS_IMAGE)
+    board = _executing(context, image, rom, port or can or where) if image else _address(port, can, where)
     is_virtual = board.partition(":")[0] == _VIRTUAL
     if not is_virtual:
         if (common.jobs or 1) != 1 or common.cluster:
@@ -133,12 +138,14 @@ def _address(port: str, can: str, where: str) -> str:
     return wanted(where)
 
 
-def _executing(context: typer.Context, image: Path, other: str) -> str:
+def _executing(context: typer.Context, image: Path, rom: Path | None, other: str) -> str:
     """The address of a virtual board that executes an image, until the command ends."""
     if other:
         raise InputError(f"--image: a virtual board of its own executes it; leave out {other}")
-    images.load(image)  # a file that cannot be executed is said to be so before anything starts
-    board = context.with_resource(Board(boards.memory(), image))
+    images.load(image)  # files that cannot be used are said to be so before anything starts
+    if rom:
+        read_boot_rom(rom)
+    board = context.with_resource(Board(boards.memory(), image, rom))
     return board.wait("serial")
 
 

@@ -60,8 +60,8 @@ def _say(there: Sequence[Section]) -> int:
     in_rom = [section.name for section in there if memories.name(section.run) == IN_ROM]
     if in_rom:
         print(
-            f"{', '.join(in_rom)}: tables of the boot ROM, which the virtual chip has not: they read as 0. Link them "
-            "into flash to run the image there (docs/c28x.md)"
+            f"{', '.join(in_rom)}: tables of the boot ROM, which the virtual chip has not: they read as 0 unless "
+            "--rom FILE gives them; or link them into flash (docs/c28x.md)"
         )
     return filled.outside
 

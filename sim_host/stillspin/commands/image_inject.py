@@ -14,7 +14,7 @@ from stillspin.flash.names import Names
 from stillspin.image import inject as injection
 from stillspin.image import opened, vectors
 from stillspin.image.inject import Difference, Report, Stretch
-from stillspin.options import AfterOption, ImageArgument, MotorOption, ProfileOption, SeedOption, number
+from stillspin.options import AfterOption, ImageArgument, MotorOption, ProfileOption, RomOption, SeedOption, number
 
 _MOST_SHOWN = 8
 
@@ -92,6 +92,7 @@ def inject(
     most: Annotated[
         int, typer.Option("--most", min=1, max=100_000, help="Give up when the stretch has more instructions.")
     ] = 2000,
+    rom: RomOption = None,
     profile_name: ProfileOption = "bench",
     motor: MotorOption = resources.DEFAULT_MOTOR,
     seed: SeedOption = 1,
@@ -101,7 +102,7 @@ def inject(
     Exit status 1 when at some place it leaves neither what an interrupt before the stretch leaves nor what one behind
     it does, or when it does not put a register back.
     """
-    image = opened.read(file)
+    image = opened.read(file, rom)
     first = image.names.address(begin, "--from")
     last = image.names.address(end, "--to") if end else first
     vector = vectors.number(interrupt, "--interrupt")
@@ -110,6 +111,7 @@ def inject(
     with opened.closing(board, image):
         opened.advance(board, after)
         report = injection.inject(board, stretch)
+        opened.say(board, image)
     print(
         f"{file.name}: {interrupt.upper()} before each of {counted(len(report.executed), 'instruction')} from "
         f"{image.names.place(first)} to {image.names.place(last)}"

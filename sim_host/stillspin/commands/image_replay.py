@@ -22,7 +22,16 @@ from stillspin.image import opened
 from stillspin.image import tape as tapes
 from stillspin.image.opened import Image
 from stillspin.image.tape import Difference, Octets, Tape
-from stillspin.options import ImageArgument, MotorOption, OtherMotorOption, ProfileOption, SeedOption, number
+from stillspin.options import (
+    NEEDS_IMAGE,
+    ImageArgument,
+    MotorOption,
+    OtherMotorOption,
+    ProfileOption,
+    RomOption,
+    SeedOption,
+    number,
+)
 from stillspin.report.progress import PhaseBar
 from stillspin.revision import revision
 from stillspin.runs import execute
@@ -113,13 +122,16 @@ def record(
             "--send", metavar="SECONDS:TEXT", help="Send this line to the serial port at that time. Repeatable."
         ),
     ] = None,
+    rom: RomOption = None,
     profile_name: ProfileOption = "bench",
     motor: OtherMotorOption = None,
     seed: SeedOption = 1,
 ) -> None:
     """Record what converter, pins and encoder tell on the virtual board, and every write to the ePWM, from power-on."""
     octets = _octets(send or [])
-    image = opened.read(file) if file else None
+    if rom and not file:
+        raise InputError(NEEDS_IMAGE)
+    image = opened.read(file, rom) if file else None
     if scenario:
         if octets:
             raise InputError("--send: a scenario says itself what is sent; leave it out")
@@ -155,6 +167,7 @@ def replay(
     *,
     file: ImageArgument,
     tape_file: Annotated[Path, typer.Argument(metavar="TAPE", help="What `image record` has written.")],
+    rom: RomOption = None,
     profile_name: ProfileOption = "bench",
     motor: MotorOption = resources.DEFAULT_MOTOR,
     seed: SeedOption = 1,
@@ -163,7 +176,7 @@ def replay(
 
     Exit status 4 when one differs: the first is named by step, register and source line.
     """
-    image, tape = opened.read(file), tapes.load(tape_file)
+    image, tape = opened.read(file, rom), tapes.load(tape_file)
     board = opened.power_on(image, profile_name, motor, seed)
     with opened.closing(board, image):
         tapes.play(board, tape.seconds, tape.octets, tape)

@@ -22,7 +22,7 @@ from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.image import closed_loop, opened, vectors
 from stillspin.image.opened import Image
-from stillspin.options import ImageArgument, OtherMotorOption, ProfileOption, SeedOption, number
+from stillspin.options import ImageArgument, OtherMotorOption, ProfileOption, RomOption, SeedOption, number
 from stillspin.report.progress import PhaseBar
 from stillspin.revision import revision
 from stillspin.runs import execute
@@ -202,6 +202,7 @@ def time(
     ] = None,
     most: Annotated[int, typer.Option("--functions", min=1, max=10_000, help="How many functions to list.")] = 20,
     lines: Annotated[int, typer.Option("--lines", min=0, max=100_000, help="How many source lines to list.")] = 0,
+    rom: RomOption = None,
     profile_name: ProfileOption = "bench",
     motor: OtherMotorOption = None,
     seed: SeedOption = 1,
@@ -210,7 +211,7 @@ def time(
 
     In a scenario it drives the motor, and is told what to do over its serial port; exit status 1 when a run breaks off.
     """
-    image = opened.read(file)
+    image = opened.read(file, rom)
     looked = _Looked(image, most, lines)
     if scenarios:
         if seconds is not None or after is not None:

@@ -10,7 +10,7 @@ from stillspin import resources
 from stillspin.errors import CampaignError
 from stillspin.image import opened
 from stillspin.image import trace as tracing
-from stillspin.options import AfterOption, ImageArgument, MotorOption, ProfileOption, SeedOption, number
+from stillspin.options import AfterOption, ImageArgument, MotorOption, ProfileOption, RomOption, SeedOption, number
 
 
 def trace(
@@ -25,6 +25,7 @@ def trace(
     ] = "",
     count: Annotated[int, typer.Option("--instructions", min=1, max=100_000, help="How many to list.")] = 40,
     after: AfterOption = 0.0,
+    rom: RomOption = None,
     within: Annotated[
         float,
         typer.Option(
@@ -39,7 +40,7 @@ def trace(
     seed: SeedOption = 1,
 ) -> None:
     """List executed instructions: cycle, address, instruction, its cycles with waits, registers that it changed."""
-    image = opened.read(file)
+    image = opened.read(file, rom)
     first = image.names.address(begin, "--from") if begin else None
     last = image.names.address(end, "--to") if end else None
     board = opened.power_on(image, profile_name, motor, seed)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import struct
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,6 +23,49 @@ _OTHERS = {
 """Beginnings of files that a linker's folder has, too."""
 
 
+def _reader(data: bytes) -> Callable[[bytes, str], Program] | None:
+    """What reads that format; None of one that is not known."""
+    formats = (
+        (data.startswith(elf.MAGIC), elf.read),
+        (data.startswith(coff.MAGIC), coff.read),
+        (boot_stream.is_binary(data), boot_stream.from_octets),
+        (boot_stream.is_text(data), boot_stream.from_text),
+        (data.lstrip()[:1] == b":", intel_hex.read),
+    )
+    return next((reader for fits, reader in formats if fits), None)
+
+
+def read_boot_rom(path: Path) -> tuple[Block, ...]:
+    """Words of the boot ROM: of a linked file what lies there; any other file is a dump from its first word on.
+
+    Raises:
+        InputError: it cannot be read, or has nothing of the boot ROM.
+    """
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror})") from error
+    rom = layout.BOOT_ROM
+    if not _reader(data):
+        if not data or len(data) % 2 or len(data) > 2 * len(rom):
+            raise InputError(
+                f"{path}: {counted(len(data), 'octet')} are no dump of the boot ROM (words from 0x{rom.start:06X} on, "
+                f"low octet first, {2 * len(rom)} octets at most); give one, or {_FORMATS}"
+            )
+        return (Block(rom.start, struct.unpack(f"<{len(data) // 2}H", data)),)
+    parts = []
+    for block in read_program(path).blocks:
+        first, end = max(block.address, rom.start), min(block.end, rom.stop)
+        if first < end:
+            parts.append(Block(first, block.words[first - block.address : end - block.address]))
+    if not parts:
+        raise InputError(
+            f"{path}: has nothing in the boot ROM (0x{rom.start:06X} to 0x{rom.stop - 1:06X}); a section of TYPE = "
+            "NOLOAD has no words"
+        )
+    return tuple(parts)
+
+
 def read_program(path: Path) -> Program:
     """Read a file in whatever format it is.
 
@@ -36,16 +81,8 @@ def read_program(path: Path) -> Program:
         raise InputError(
             f"{name}: a file of {counted(len(data), 'octet')} is no program for this chip; give {_FORMATS}"
         )
-    if data.startswith(elf.MAGIC):
-        return elf.read(data, name)
-    if data.startswith(coff.MAGIC):
-        return coff.read(data, name)
-    if boot_stream.is_binary(data):
-        return boot_stream.from_octets(data, name)
-    if boot_stream.is_text(data):
-        return boot_stream.from_text(data, name)
-    if data.lstrip()[:1] == b":":
-        return intel_hex.read(data, name)
+    if reader := _reader(data):
+        return reader(data, name)
     if not data:
         raise InputError(f"{name}: is empty; give {_FORMATS}")
     for begin, words in _OTHERS.items():

@@ -34,7 +34,7 @@ MEMORIES = (
     Memory("sector A", layout.SECTOR_A, group="flash"),
     Memory("registers", range(0x0800, 0x0E00), loaded=False),
     Memory("registers", range(0x6000, 0x8000), loaded=False),
-    Memory("boot ROM", range(0x3FF000, 0x400000), loaded=False),
+    Memory("boot ROM", layout.BOOT_ROM, loaded=False),
 )
 NOWHERE = "nowhere"
 _STRETCHES = (range(0x0800), range(0x8000, 0xC000), range(0x3D7800, 0x3D7C00), layout.FLASH, range(0x3F8000, 0x3FC000))

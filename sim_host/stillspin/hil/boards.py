@@ -48,10 +48,11 @@ def memory() -> bytes:
 class Board:
     """One process, from entering to leaving; `memory` is what is in its memory after that."""
 
-    def __init__(self, memory: bytes | None, image: Path | None = None) -> None:
-        """With the firmware that is compiled for this computer, or executing an image of the C28x."""
+    def __init__(self, memory: bytes | None, image: Path | None = None, rom: Path | None = None) -> None:
+        """With the firmware that is compiled for this computer, or executing an image, with a boot ROM if given."""
         self.memory = memory or b""
         self._image = ["--image", str(image)] if image else []
+        self._image += ["--rom", str(rom)] if rom else []
 
     def __enter__(self) -> Self:
         """Switch it on."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from stillspin import core
@@ -19,10 +19,10 @@ from stillspin.core_board import NativeBoard
 from stillspin.counted import counted
 from stillspin.errors import CampaignError
 from stillspin.flash import names
-from stillspin.flash.files import read_program
+from stillspin.flash.files import read_boot_rom, read_program
 from stillspin.flash.names import Names
 from stillspin.flash.program import Program
-from stillspin.image import remarks, runaway
+from stillspin.image import remarks, runaway, unmodelled
 
 SLICE = 1_000_000
 """Ticks between two looks at a board that runs to a place."""
@@ -40,17 +40,20 @@ class Image:
     names: Names
     remarks: Sequence[str] = ()
     """What a user has to know of the file, in words."""
+    rom: core.Blocks = field(default_factory=list)
+    """Words of the boot ROM."""
 
 
-def read(file: Path) -> Image:
-    """A file with what it says of itself.
+def read(file: Path, rom: Path | None = None) -> Image:
+    """A file with what it says of itself, and the file of the boot ROM's words that goes with it.
 
     Raises:
         InputError: it cannot be read.
     """
     program = read_program(file)
     there = names.read(file)
-    return Image(file, program, there, [*there.damage, *remarks.of(file, program)])
+    blocks = [(block.address, list(block.words)) for block in read_boot_rom(rom)] if rom else []
+    return Image(file, program, there, [*there.damage, *remarks.of(file, program)], blocks)
 
 
 def power_on(image: Image, profile_name: str, motor: str, seed: int) -> NativeBoard:
@@ -67,7 +70,7 @@ def power_on(image: Image, profile_name: str, motor: str, seed: int) -> NativeBo
 def power_with(native: NativeCore, image: Image, chosen: Profile, seed: int) -> NativeBoard:
     """The same with a profile at hand."""
     board = power.power(native, chosen, profile.Changes(), seed, blocks_of(image.program, str(image.file)))
-    _hook_flash_library(board, image.names)
+    _complete(board, image)
     return board
 
 
@@ -80,15 +83,17 @@ def power_plant(native: NativeCore, image: Image, plant: Plant, seed: int) -> Na
     """
     blocks = blocks_of(image.program, str(image.file))
     board = native.VirtualBoard(plant=plant, parameters={}, seed=seed, image=blocks)
-    _hook_flash_library(board, image.names)
+    _complete(board, image)
     return board
 
 
-def _hook_flash_library(board: NativeBoard, there: Names) -> None:
-    """Carry out TI's flash library on the model's cells, where the image has it."""
+def _complete(board: NativeBoard, image: Image) -> None:
+    """Give it the boot ROM's words, and carry out TI's flash library on the model's cells, where the image has it."""
+    board.load_rom(image.rom)
+    known = image.names.addresses
 
     def place(name: str) -> int:
-        return there.addresses.get(name, there.addresses.get(f"_{name}", 0))
+        return known.get(name, known.get(f"_{name}", 0))
 
     erase, program, verify = (place(f"Flash2808_{name}") for name in ("Erase", "Program", "Verify"))
     if erase or program or verify:
@@ -100,12 +105,7 @@ def warnings(board: NativeBoard, image: Image) -> list[str]:
     said = [f"{image.file.name}: {words}" for words in image.remarks]
     ran_away = runaway.said(board, image.names)
     said += [ran_away] if ran_away else []
-    if there := board.statistics()["unmodelled_accesses"]:
-        said.append(
-            f"the program accessed parts of the chip that are not modelled ({counted(there, 'time')}): the boot "
-            "ROM's tables (IQmath), SPI, eCAP (docs/chip.md). They read as 0; results computed from them are wrong"
-            + ("; what it did behind the illegal instruction is among them" if ran_away else "")
-        )
+    said += unmodelled.said(board, image.names)
     if resets := board.statistics()["resets"]:
         said.append(f"the watchdog reset the chip ({counted(resets, 'time')}), and the program began anew")
     return [f"{WARNING}{words}" for words in said]
@@ -127,6 +127,8 @@ def closing(board: NativeBoard, image: Image) -> Iterator[None]:
     try:
         yield
     except CampaignError as error:
+        for words in unmodelled.said(board, image.names):
+            print(f"{WARNING}{words}")
         if ran_away := runaway.said(board, image.names):
             raise CampaignError(f"{error}. Before that, {ran_away}") from error
         raise

@@ -9,7 +9,6 @@ from stillspin.flash.names import Names
 
 _TRAPS = frozenset({"ITRAP0", "ITRAP1"})
 _EMPTY = 0x0000
-_ROM = range(0x3FF000, 0x400000)
 _POINTER = "a return address or a pointer to a function was overwritten or never set (has the stack grown into it?)"
 
 
@@ -19,24 +18,29 @@ def is_illegal(words: list[int]) -> bool:
     return line.form is None or line.text in _TRAPS
 
 
+def cycle(board: NativeBoard) -> int | None:
+    """In which it first came to what is no instruction; None: never, as far as is known."""
+    rows = board.traced()
+    if not rows or (len(rows) > 1 and not is_illegal(board.words(rows[-1][1]["PC"], 2))):
+        return None
+    return rows[-1][0]
+
+
 def said(board: NativeBoard, names: Names) -> str:
     """In words, with the place and the call before it; empty where no illegal instruction was executed.
 
     A trace that was asked for ends with it, and is not told from one that did not come to its end: where the last
     instruction of several looks legal by now, nothing is said.
     """
-    rows = board.traced()
-    if not rows:
+    when = cycle(board)
+    if when is None:
         return ""
-    cycles, before = rows[-1]
+    before = board.traced()[-1][1]
     place, last_call = before["PC"], before["RPC"]
-    words = board.words(place, 2)
-    if len(rows) > 1 and not is_illegal(words):
-        return ""
     called = f", the last call returns to {names.place(last_call)}" if memories.stretch(last_call) else ""
     return (
-        f"the program came to an illegal instruction at {_where(place, names)}, in cycle {cycles}{called}. "
-        f"It trapped there (vector 19). Usually: {_usually(place, words[0])}"
+        f"the program came to an illegal instruction at {_where(place, names)}, in cycle {when}{called}. "
+        f"It trapped there (vector 19). Usually: {_usually(place, board.words(place, 1)[0])}"
     )
 
 
@@ -49,7 +53,7 @@ def _where(place: int, names: Names) -> str:
 
 
 def _usually(place: int, word: int) -> str:
-    if place in _ROM:
+    if place in layout.BOOT_ROM:
         return "a function of the boot ROM was called, whose code the virtual chip has not: link it into flash"
     if memories.stretch(place) is None:
         return _POINTER

@@ -1,0 +1,40 @@
+// What a program that is executed accesses that the virtual chip has not: by address how often, and where first.
+
+#ifndef STILLSPIN_SIM_HOST_CHIP_UNMODELLED_HPP
+#define STILLSPIN_SIM_HOST_CHIP_UNMODELLED_HPP
+
+#include <cstdint>
+#include <map>
+
+namespace stillspin::chip {
+
+class Unmodelled {
+ public:
+  /// The instruction that accesses, and when.
+  struct Access {
+    std::uint32_t place = 0;
+    std::uint64_t cycle = 0;
+  };
+  struct Use {
+    std::uint64_t reads = 0;
+    std::uint64_t writes = 0;
+    Access first;
+  };
+
+  void note(std::uint32_t address, bool write, const Access& access) {
+    if (uses_.size() >= kMost && uses_.count(address) == 0) return;
+    Use& use = uses_.try_emplace(address, Use{0, 0, access}).first->second;
+    ++(write ? use.writes : use.reads);
+  }
+  const std::map<std::uint32_t, Use>& uses() const { return uses_; }
+
+ private:
+  // A pointer that runs through empty memory finds four million of them.
+  static constexpr std::size_t kMost = 0x2000;
+
+  std::map<std::uint32_t, Use> uses_;
+};
+
+}  // namespace stillspin::chip
+
+#endif
