@@ -101,7 +101,7 @@ void command_coast(const words_of_line_t* a) {
 static void show_reference(void) {
   octet_writer_t* const w = line_begin();
   put_packed(w, SAY_ref);
-  put_fixed(w, drive.control.command_rpm_q16, 16, 2);
+  put_fixed(w, drive_commanded_speed(), 16, 2);
   put_packed(w, SAY_rpm);
   line_end();
 }

@@ -34,7 +34,7 @@ static void put_speeds(octet_writer_t* w) {
   const drive_signals_t s = drive_signals();
   if (s.speed_known != 0) put_fixed(w, s.speed, 16, 1);
   put_packed(w, (s.speed_known != 0) ? SAY_rpm_of : SAY_unknown_the_shaft_may_be_turning);
-  put_fixed(w, drive.control.command_rpm_q16, 16, 1);
+  put_fixed(w, drive_commanded_speed(), 16, 1);
   put_packed(w, SAY_rpm);
 }
 

@@ -43,7 +43,7 @@ static void reload(void) {
   drive.conflict_known = true;
   if (valid) drive_config_take(&drive.config, fresh);
   drive.control.current_limit_q20 = interlock_current_limit();
-  drive_command_speed(drive.control.command_rpm_q16);  // in the units of the new configuration
+  drive_command_speed(drive_commanded_speed());  // in the units of the new configuration
   if (!drive_is_energised()) {
     drive.model = drive.config.nameplate;
     drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);

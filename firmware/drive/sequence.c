@@ -7,6 +7,7 @@
 #include "firmware/mode/mode.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_safety.h"
+#include "hal/qmath/qcall.h"
 
 #define CALIBRATE_PERIODS 256u
 #define SAMPLES_TIMEOUT 2000u
@@ -128,10 +129,23 @@ static void take_requests(drive_t* d) {
   r->look = false;
 }
 
+// Before the state's step, which may begin with it. Command and target are written at this level alone, so that a fault
+// puts both to zero, or comes before both.
+static void take_speed(drive_t* d) {
+  if (!d->request.speed) return;
+  drive_control_t* const c = &d->control;
+  d->request.speed = false;
+  c->command_rpm_q16 = d->request.speed_rpm_q16;
+  if (d->flags.spins) return;  // the spin has a speed of its own
+  const int32_t limit_q16 = qc_shl_sat(d->config.values.speed_limit, 8);
+  c->target_bpp = qc_mul_sat(q_clamp(c->command_rpm_q16, -limit_q16, limit_q16), d->config.bpp_per_rpm_q8, 24);
+}
+
 void drive_sequence(drive_t* d) {
   d->periods++;
   d->heartbeat++;
   hal_safety_toggle_enable();
+  take_speed(d);
   switch (d->state) {
     case DRIVE_BOOT:
       if (!d->loading) drive_enter(d, DRIVE_CALIBRATE);

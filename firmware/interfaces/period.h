@@ -58,7 +58,7 @@ typedef struct {
   speed_controller_t speed;
   field_weakening_t weakening;
   int32_t weakening_q20;
-  int32_t current_limit_q20;                   // largest phase current now (board/functions.h)
+  int32_t current_limit_q20;                   // by the background level: largest phase current now
   int32_t headroom_q20, braking_headroom_q20;  // torque current that the limits leave, and against the rotation, A
   q_inverse_t per_torque_constant;             // of N m per A, Q24, at the reference of i_d
   ramp_t ramp;

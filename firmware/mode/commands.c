@@ -2,7 +2,6 @@
 
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
-#include "hal/qmath/qcall.h"
 
 void drive_parameters_changed(void) { drive.request.reload = true; }
 
@@ -27,9 +26,13 @@ void drive_command_coast(void) {
 
 void drive_command_reset(void) { drive.request.reset = true; }
 
+// The value first: as soon as it is asked for it is taken.
 void drive_command_speed(int32_t rpm_q16) {
-  drive.control.command_rpm_q16 = rpm_q16;
-  if (drive.flags.spins) return;  // the spin has a speed of its own
-  const int32_t limit_q16 = qc_shl_sat(drive.config.values.speed_limit, 8);
-  drive.control.target_bpp = qc_mul_sat(q_clamp(rpm_q16, -limit_q16, limit_q16), drive.config.bpp_per_rpm_q8, 24);
+  drive.request.speed_rpm_q16 = rpm_q16;
+  drive.request.speed = true;
+}
+
+// In this order: what is taken between the two looks stays where it was left, too.
+int32_t drive_commanded_speed(void) {
+  return drive.request.speed ? drive.request.speed_rpm_q16 : drive.control.command_rpm_q16;
 }

@@ -35,6 +35,8 @@ void drive_command_coast(void);
 /// Mechanical speed reference, rpm Q16; clamped to the speed limit. Taken in every state and kept through stop and
 /// start, so it may be given before the start; a fault puts it to zero.
 void drive_command_speed(int32_t rpm_q16);
+/// What was asked for last, rpm Q16, whether the control interrupt has taken it yet or not; 0 after a fault.
+int32_t drive_commanded_speed(void);
 /// Clears a latched fault; the drive calibrates its offsets again and is READY.
 void drive_command_reset(void);
 

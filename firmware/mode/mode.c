@@ -69,6 +69,7 @@ void drive_trip(drive_t* d, drive_fault_t fault) {
   d->fault = fault;
   begin(d, DRIVE_FAULT);
   d->control.closed = false;
+  d->request.speed = false;  // asked for before the fault
   d->control.command_rpm_q16 = 0;
   d->control.target_bpp = 0;
   hal_safety_fault_lamp(true);

@@ -1,7 +1,8 @@
 // The drive: everything that lives from one control interrupt to the next.
 //
-// One instance, cleared at start-up. The control interrupt owns it; the window interrupt owns sampling.h's buffers; the
-// background level only leaves requests in `request`.
+// One instance, cleared at start-up. The control interrupt writes it, and the window interrupt sampling.h's buffers.
+// The background level leaves requests in `request`, writes what it alone writes (said there), and changes the rest
+// only with the interrupts held off: when a configuration is exchanged (drive/reload.c), or at a fault that it sees.
 
 #ifndef STILLSPIN_FIRMWARE_MODE_MODE_H
 #define STILLSPIN_FIRMWARE_MODE_MODE_H
@@ -14,6 +15,9 @@
 
 typedef struct {
   bool start, stop, coast, reset, reload, commission, look;
+  // A speed and its value, which is written first: neither may change places.
+  volatile bool speed;
+  volatile int32_t speed_rpm_q16;
 } drive_request_t;
 
 /// What is read everywhere comes first, what is large last: the farther a member, the longer the code that reaches it.
@@ -29,7 +33,7 @@ typedef struct drive {
   volatile uint16_t sliced;  // 1: a phase control has the legs (interfaces/phase_control.h)
   bool config_valid;
   bool conflict_known;  // of the parameters that the configuration was made of
-  bool loading;         // the store is being read: BOOT goes on
+  bool loading;         // by the background level: the store is being read, BOOT goes on
   drive_request_t request;
   const position_source_t* source;  // by the parameter, chosen when that changes
   packed_text_t conflict;           // why they do not fit together, or PACKED_NONE
@@ -44,8 +48,8 @@ typedef struct drive {
   uint32_t settled_at;                           // period in which the currents will have been at rest for long enough
   int32_t zero_current_a_q8, zero_current_b_q8;  // currents at rest while the offsets are found, codes
   int32_t offset_residual_q8;  // mean deviation of the currents from their offsets while these are found, codes
-  int32_t heat_sink_q8;        // degrees C, as board/derating.c has it
-  bool heat_sink_known;        // by a sensor that is in use and whole
+  int32_t heat_sink_q8;        // by the background level (board/derating.c), degrees C
+  bool heat_sink_known;        // and this: by a sensor that is in use and whole
   drive_config_t config;
 } drive_t;
 

@@ -72,6 +72,7 @@ TEST_F(Reload, SpeedAndCurrentAreInTheNewUnits) {
   parameters.pole_pairs = 8;
   parameters.current_limit = parameters.weakening_limit = raw(3.5, 20);
   reload();
+  period();
   EXPECT_NEAR(inside::target_bpp() / (80.0 * kPeriod * 4294967296.0), 1.0, 1e-5);
   EXPECT_EQ(inside::current_limit_q20(), raw(3.5, 20));
 }

@@ -34,7 +34,7 @@ TEST_F(CanCommand, WithoutAReactionTheBusKeepsTheCommand) {
   EXPECT_TRUE(command.timed_out);
   EXPECT_TRUE(command.commanding);
   take(frame(CAN_MODE_RUN, 400));
-  EXPECT_EQ(inside::command_rpm_q16(), 100 << 16) << "the next command goes on with it";
+  EXPECT_EQ(drive_commanded_speed(), 100 << 16) << "the next command goes on with it";
 }
 
 TEST_F(CanCommand, SilenceLeadsToTheConfiguredReaction) {

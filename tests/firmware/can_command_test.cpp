@@ -16,9 +16,9 @@ namespace {
 TEST_F(CanCommand, RunsAtTheSpeedAskedForAndStops) {
   make_running_by_bus();
   take(frame(CAN_MODE_RUN, 400));
-  EXPECT_EQ(inside::command_rpm_q16(), 100 << 16) << "400 quarters of a revolution per minute";
+  EXPECT_EQ(drive_commanded_speed(), 100 << 16) << "400 quarters of a revolution per minute";
   take(frame(CAN_MODE_RUN, -400));
-  EXPECT_EQ(inside::command_rpm_q16(), -100 * 65536);
+  EXPECT_EQ(drive_commanded_speed(), -100 * 65536);
   take(frame(CAN_MODE_STOP));
   EXPECT_TRUE(inside::request().stop);
 }
@@ -148,7 +148,7 @@ TEST_F(CanCommand, WhatDoesNotCountDoesNothing) {
   }
   EXPECT_FALSE(inside::request().stop);
   EXPECT_FALSE(inside::request().coast);
-  EXPECT_EQ(inside::command_rpm_q16(), 0);
+  EXPECT_EQ(drive_commanded_speed(), 0);
   EXPECT_FALSE(command.clear_fault);
 }
 
@@ -184,11 +184,11 @@ TEST_F(CanCommand, ASpeedIsTakenOnlyByADriveThatTheBusRuns) {
   make_running_by_bus();
   inside::state() = DRIVE_FAULT;
   take(frame(CAN_MODE_RUN, 400));
-  EXPECT_EQ(inside::command_rpm_q16(), 0) << "not for after the fault";
+  EXPECT_EQ(drive_commanded_speed(), 0) << "not for after the fault";
   inside::state() = DRIVE_RUN;
   command.commanding = false;
   take(frame(CAN_MODE_RUN, 400));
-  EXPECT_EQ(inside::command_rpm_q16(), 0) << "somebody else's";
+  EXPECT_EQ(drive_commanded_speed(), 0) << "somebody else's";
 }
 
 TEST_F(CanCommand, AStopThatGoesOnDoesNotStopWhatSomebodyElseStarts) {

@@ -279,9 +279,12 @@ TEST_F(Commissioning, ASpeedCommandDoesNotReachTheSpin) {
   inside::flags().spins = true;
   inside::target_bpp() = 12345;
   drive_command_speed(1000L * 65536L);
+  drive_sequence(&drive);
+  EXPECT_EQ(inside::command_rpm_q16(), 1000L * 65536L) << "it is for what follows";
   EXPECT_EQ(inside::target_bpp(), 12345);
   inside::flags().spins = false;
   drive_command_speed(1000L * 65536L);
+  drive_sequence(&drive);
   EXPECT_GT(inside::target_bpp(), 12345);
 }
 

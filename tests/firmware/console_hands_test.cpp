@@ -64,7 +64,7 @@ TEST_F(ConsoleHands, ASpeedExpiresWhileTheMotorRunsUnlessItIsZero) {
   if (missing_of({"start/flying"}).empty()) {
     EXPECT_TRUE(has(after("look", kLong), "typed over 5 s ago"));
   }
-  EXPECT_EQ(inside::command_rpm_q16(), 50 * 65536);
+  EXPECT_EQ(drive_commanded_speed(), 50 * 65536);
   EXPECT_TRUE(has(after("ref 0", kLong), "ref 0.00 rpm"));
 }
 
@@ -163,7 +163,7 @@ TEST_F(ConsoleHands, ABreakLeavesWhatWasTypedBehindItDuringALongAnswer) {
   serial_break();
   send("ref 50\r");
   run(40000);
-  EXPECT_EQ(inside::command_rpm_q16(), 50 * 65536);
+  EXPECT_EQ(drive_commanded_speed(), 50 * 65536);
   EXPECT_FALSE(has(text, "ref 70"));
 }
 
@@ -179,7 +179,7 @@ TEST_F(ConsoleHands, ABreakForgetsWhatWasTypedAhead) {
   run(100);
   serial_break();
   run(30000);
-  EXPECT_EQ(inside::command_rpm_q16(), 0);
+  EXPECT_EQ(drive_commanded_speed(), 0);
   EXPECT_EQ(command("ref 50"), "ref 50.00 rpm\r\n");
 }
 

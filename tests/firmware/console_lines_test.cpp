@@ -218,7 +218,7 @@ TEST_F(ConsoleLines, AnyErrorOfThePortDisturbsALine) {
     send("0\r");
     run(300);
     EXPECT_TRUE(has(text, "the line was disturbed on its way: nothing done, send it again\r\n> ")) << text;
-    EXPECT_EQ(inside::command_rpm_q16(), 0);
+    EXPECT_EQ(drive_commanded_speed(), 0);
     EXPECT_EQ(command("ref 0"), "ref 0.00 rpm\r\n") << "the next one is not";
   }
 }

@@ -86,7 +86,7 @@ TEST_F(Console, NumbersAreOneRule) {
             "1,000 is not a number (point, no comma) in rpm up to speed_limit, 3300 rpm: nothing changed\r\n");
   EXPECT_EQ(command("ref 1e9"), "1e9 rpm is beyond speed_limit, 3300 rpm: nothing changed\r\n");
   EXPECT_EQ(command("ref -40000"), "-40000 rpm is beyond speed_limit, 3300 rpm: nothing changed\r\n");
-  EXPECT_EQ(inside::command_rpm_q16(), 1500 * 65536);
+  EXPECT_EQ(drive_commanded_speed(), 1500 * 65536);
 }
 
 TEST_F(Console, DidYouMean) {
@@ -304,7 +304,7 @@ TEST_F(Console, WhatIsTypedAheadIsNotLost) {
   send("list\rversion\rref 70\r");
   run(30000);
   EXPECT_TRUE(has(text, "protocol 1"));
-  EXPECT_EQ(inside::command_rpm_q16(), 70 * 65536);
+  EXPECT_EQ(drive_commanded_speed(), 70 * 65536);
 }
 
 TEST_F(Console, ToStopDoesNotWaitForTheEndOfALongAnswer) {
@@ -316,7 +316,7 @@ TEST_F(Console, ToStopDoesNotWaitForTheEndOfALongAnswer) {
   EXPECT_TRUE(inside::request().stop);
   run(30000);
   EXPECT_TRUE(has(text, "the answer and what was typed ahead end here\r\nstopping\r\n> "));
-  EXPECT_EQ(inside::command_rpm_q16(), 0) << "and that was said";
+  EXPECT_EQ(drive_commanded_speed(), 0) << "and that was said";
 }
 
 // A terminal that ends its lines with a line feed stops the motor as soon as any.
@@ -340,7 +340,7 @@ TEST_F(Console, MoreThanCanBeKeptEndsTheAnswerAndIsNotLostEither) {
   send(lines);
   run(60000);
   EXPECT_TRUE(has(text, "more input than can be kept"));
-  EXPECT_EQ(inside::command_rpm_q16(), 70 * 65536);
+  EXPECT_EQ(drive_commanded_speed(), 70 * 65536);
 }
 
 TEST_F(Console, RecordsAreAnsweredInTheMiddleOfALongAnswer) {
@@ -366,7 +366,7 @@ TEST_F(Console, ADisturbedLineIsNotObeyed) {
       "ref \xC3\xA4"
       "50\r");
   run(300);
-  EXPECT_EQ(inside::command_rpm_q16(), 0);
+  EXPECT_EQ(drive_commanded_speed(), 0);
   send("st\xFFop\r");
   run(300);
   EXPECT_TRUE(inside::request().stop) << "but to stop is always right";
@@ -380,7 +380,7 @@ TEST_F(Console, ADisturbedLineIsNotObeyed) {
 
 TEST_F(Console, ALineThatIsTooLongIsRefused) {
   EXPECT_TRUE(has(command("ref 50" + std::string(80, ' ')), "at most 80 characters: nothing done"));
-  EXPECT_EQ(inside::command_rpm_q16(), 0);
+  EXPECT_EQ(drive_commanded_speed(), 0);
 }
 
 // Lines never come out in pieces: whatever the room, whole lines or none.

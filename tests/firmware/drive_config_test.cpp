@@ -259,6 +259,7 @@ TEST_F(DriveConfig, SpeedCommandIsClampedToTheLimit) {
   const std::pair<double, double> cases[] = {{600, 600}, {-600, -600}, {5000, 3300}, {-32000, -3300}};
   for (const auto& [asked, got] : cases) {
     drive_command_speed(raw(asked, 16));
+    drive_sequence(&drive);
     EXPECT_NEAR(inside::target_bpp() / per_rpm, got, 0.01) << asked;
   }
 }

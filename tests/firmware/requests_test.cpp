@@ -168,11 +168,11 @@ TEST_F(Requests, Commands) {
   EXPECT_EQ(give(COMMAND_START).status(), STATE) << "not calibrated yet";
   inside::state() = DRIVE_READY;
   EXPECT_EQ(give(COMMAND_SPEED, 600 * 65536).status(), OK);
-  EXPECT_EQ(inside::command_rpm_q16(), 600 * 65536);
+  EXPECT_EQ(drive_commanded_speed(), 600 * 65536);
   const Answer fast = give(COMMAND_SPEED, 4000 * 65536);
   EXPECT_EQ(fast.status(), RANGE);
   EXPECT_EQ(fast.text(), "4000.0 rpm is beyond speed_limit, 3300 rpm: nothing changed");
-  EXPECT_EQ(inside::command_rpm_q16(), 600 * 65536);
+  EXPECT_EQ(drive_commanded_speed(), 600 * 65536);
   EXPECT_EQ(give(COMMAND_START).status(), OK);
   EXPECT_TRUE(inside::request().start);
   EXPECT_EQ(give(COMMAND_STOP).status(), OK);

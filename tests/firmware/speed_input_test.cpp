@@ -41,7 +41,7 @@ class SpeedInput : public Drive {
       use_parameters();
     }
   }
-  static double asked_rpm() { return inside::command_rpm_q16() / 65536.0; }
+  static double asked_rpm() { return drive_commanded_speed() / 65536.0; }
 };
 
 TEST_F(SpeedInput, ASwitchClosedAtPowerOnStartsNothing) {

@@ -68,7 +68,7 @@ void any_moment(void) {
   drive.control.reference_q20.q = any_i32;
   drive.control.command_q16.d = any_i32;
   drive.control.command_q16.q = any_i32;
-  drive.control.command_rpm_q16 = any_i32;
+  drive.request.speed_rpm_q16 = any_i32;
   drive.modulation.command_q16.alpha = any_i32;
   drive.modulation.command_q16.beta = any_i32;
   scope_step();
@@ -85,7 +85,8 @@ int32_t drive_look_rpm(void) { return any_i32; }
 bool drive_knows_speed(const volatile drive_t* d) { return d->heartbeat > 0u && any_bool(); }
 uint16_t drive_known(const volatile drive_t* d) { return (uint16_t)(d->heartbeat & any_up_to(3)); }
 void drive_command_commission(void) {}
-void drive_command_speed(int32_t rpm_q16) { drive.control.command_rpm_q16 = rpm_q16; }
+void drive_command_speed(int32_t rpm_q16) { drive.request.speed_rpm_q16 = rpm_q16; }
+int32_t drive_commanded_speed(void) { return drive.request.speed_rpm_q16; }
 bool drive_is_energised(void) { return any_bool(); }
 uint32_t drive_time_ms(void) { return any_u32; }
 drive_state_t drive_state(void) { return (drive_state_t)any_up_to(7); }

@@ -178,7 +178,8 @@ static void one_period(void) {
   drive.request.reset = any_bool();
   drive.request.commission = any_bool();
   drive.loading = any_bool();
-  drive.control.command_rpm_q16 = any_i32;
+  drive.request.speed = any_bool();
+  drive.request.speed_rpm_q16 = any_i32;
   for (uint16_t k = 0; k < 3u; k++) {
     if (any_bool()) drive_window_interrupt();
   }
