@@ -8,7 +8,7 @@ import webbrowser
 import zlib
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -18,7 +18,9 @@ from stillspin.errors import InputError
 from stillspin.link.errors import DriveError
 from stillspin.options import whole
 from stillspin.tune.listen import Outside, outside
-from stillspin.tune.server import Server
+
+if TYPE_CHECKING:
+    from stillspin.tune.server import Server
 
 _OWN = range(49152, 65536)
 """Ports that anybody may use."""
@@ -65,6 +67,8 @@ def tune(
 
 def _server(drive: Drive, where: str, port: int, beyond: Outside | None) -> Server:
     """On the port that this drive had the last time, so that a page which is still open finds it again."""
+    from stillspin.tune.server import Server  # noqa: PLC0415 - takes long to load, and not all need it
+
     reopen = partial(Drive.open, where)
     if not port:
         with contextlib.suppress(InputError):
