@@ -66,7 +66,7 @@ def test_a_table_has_the_rows_of_the_edition_in_their_order(tmp_path: Path) -> N
         "store_reset",
         "board_reset",
     ]
-    backwards = plant(tmp_path, "backwards.txt", "board\nstore\nscope\n")
+    backwards = plant(tmp_path, "backwards.txt", "scope\nstore\nboard\nconsole\nlink\nsources/observer\ndrive\n")
     assert rows(compose.table_text("resets", compose.read_edition(str(backwards)), ROOT)) == [
         row for row in rows(resets) if row.startswith(("scope", "store", "board", "NULL"))
     ]
@@ -142,7 +142,7 @@ def test_a_feature_that_says_what_nobody_knows_is_refused(tmp_path: Path, said: 
 
 def test_two_rows_of_one_place_are_refused(tmp_path: Path) -> None:
     plant(tmp_path, "own/feature.toml", "[rows]\nphase_control = { own_control = 1 }\n")
-    own = plant(tmp_path, "own.txt", "sources/observer\nsources/flux\nsources/encoder\nhysteresis\nown\n")
+    own = plant(tmp_path, "own.txt", "drive\nsources/observer\nsources/flux\nsources/encoder\nhysteresis\nown\n")
     with pytest.raises(ValueError, match="hysteresis_control and own_control want the same place in phase_control"):
         compose.table_text("phase_control", compose.read_edition(str(own)), ROOT)
 
