@@ -58,9 +58,12 @@ void deviation_observer_design(deviation_observer_config_t* c, const machine_mod
 }
 
 void deviation_observer_preset(deviation_observer_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8) {
-  static const deviation_observer_t uncertain = {
-      .p_aa = ANGLE_VARIANCE, .p_ss = SPEED_VARIANCE, .p_ll = LOAD_VARIANCE, .score_power_q23 = POWER_START};
-  *s = uncertain;
+  int32_t* const all = (int32_t*)(void*)s;  // a copy to take them from would be as long as they are
+  for (uint16_t k = 0; k < sizeof *s / sizeof *all; k++) all[k] = 0;
+  s->p_aa = ANGLE_VARIANCE;
+  s->p_ss = SPEED_VARIANCE;
+  s->p_ll = LOAD_VARIANCE;
+  s->score_power_q23 = POWER_START;
   s->angle_bam = angle_bam;
   s->speed_bpp = q_limit(speed_bpp, MACHINE_SPEED_END_BPP);
   s->load_accel_q8 = load_accel_q8;

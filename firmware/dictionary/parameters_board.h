@@ -2,15 +2,15 @@
 
 // Serial port
 PARAMETER(200, baud_rate, BAUD, 0, 0, 9600, 400000, 115200, STOPPED,
-          "bit rate of the serial port; saved, it applies from the next power-on")
+          "bit rate; saved, it applies from the next power-on")
 PARAMETER(201, link_timeout, MS, 0, 0, 50, 60000, 1000, ALWAYS,
           "longest silence of the client that guards the motor, then link_reaction")
 PARAMETER(202, link_reaction, NONE, 0, 0, 1, 2, 1, ALWAYS, "communication lost: 1 stop, 2 coast")
 
 // CAN bus
-PARAMETER(220, can_node, NONE, 0, 0, 1, 31, 1, STOPPED, "number on the CAN bus, added to the messages' identifiers")
+PARAMETER(220, can_node, NONE, 0, 0, 1, 31, 1, STOPPED, "number on the CAN bus")
 PARAMETER(221, can_rate, KBIT_PER_S, 0, 0, 0, 1000, 500, STOPPED,
-          "1000, 500, 250, 125, 100, 50, 20 or 10; with 0 or any other value the bus is off")
+          "one that is usual, 10 to 1000; with any other value the bus is off")
 PARAMETER(222, can_timeout, MS, 0, 0, 10, 10000, 200, ALWAYS,
           "longest silence of the bus that started the drive, then can_reaction")
 PARAMETER(223, can_reaction, NONE, 0, 0, 0, 2, 1, ALWAYS, "when commands are missing: 0 nothing, 1 stop, 2 coast")
@@ -21,7 +21,7 @@ PARAMETER(226, can_recovery, MS, 0, 0, 1, 10000, 100, ALWAYS, "time from bus-off
 
 // Functions of the board (board/functions.h)
 PARAMETER(400, bootstrap_time, MS, 16, 1, 0, 200, BOARD_BOOTSTRAP_TIME, STOPPED,
-          "lower devices on before the first pulse, for the bootstrap capacitors; 0 where there are none")
+          "lower devices on before the first pulse; 0 where there are no bootstrap capacitors")
 PARAMETER(401, precharge_voltage, V, 16, 1, 0, 15000, 0, STOPPED,
           "DC-link voltage at which the precharge relay closes; 0 where there is none")
 PARAMETER(402, precharge_time, MS, 0, 0, 10, 60000, 2000, ALWAYS, "time for the DC link to reach precharge_voltage")
@@ -36,7 +36,7 @@ PARAMETER(410, temperature_limit, CELSIUS, 8, 0, 0, 130, 0, ALWAYS,
 PARAMETER(411, temperature_derating, CELSIUS, 8, 0, 0, 130, 70, ALWAYS,
           "heat-sink temperature from which the current limit falls, to half at temperature_limit")
 PARAMETER(412, overload_current, A, 20, 2, -100, 10000, -100, ALWAYS,
-          "continuous phase current, peak, to which overload lowers the limit; below 0: rated_current, 0: no check")
+          "continuous phase current, peak; below 0: rated_current, 0: no check")
 PARAMETER(413, overload_time, MS, 0, 0, 100, 600000, 60000, ALWAYS,
           "time constant of the winding, or of the inverter where that is shorter")
 PARAMETER(420, emergency_stop, NONE, 0, 0, 0, 1, 0, STOPPED,

@@ -26,7 +26,7 @@ PARAMETER(67, observer_load_rate, NM, 20, 2, 1, 10000, 100, ALWAYS, "load change
 PARAMETER(75, observer_load_quiet, NM, 20, 2, 1, 10000, 5, ALWAYS,
           "observer_load_rate at a crawl, while the load seems steady")
 PARAMETER(77, observer_load_step, NM, 20, 2, 1, 10000, 200, ALWAYS,
-          "load step that the observer looks for at a crawl; at speed twice that, if the map is known")
+          "load step to look for at a crawl; at speed twice that, if the map is known")
 PARAMETER(76, cogging_order, NONE, 0, 0, 0, 60, 6, ALWAYS, "cogging periods per electrical turn; 0 learns none")
 PARAMETER(68, observer_windows, NONE, 0, 0, 0, 1, 1, ALWAYS,
           "windows given to the deviation observer: 0 zero vectors only, 1 all")
@@ -36,8 +36,7 @@ PARAMETER(71, id_low_speed, A, 20, 2, -1000, 1000, 0, ALWAYS,
           "d-axis current below the blend, makes the ZVV deviation observable")
 PARAMETER(74, drift_time, MS, 8, 0, 50, 30000, 2000, ALWAYS,
           "time constant of the adaptation of resistance and flux; 30000 is off")
-PARAMETER(78, inertia_adapt, NONE, 0, 0, 0, 1, 1, ALWAYS,
-          "learn the inertia from run-ups under a large torque; needs the map")
+PARAMETER(78, inertia_adapt, NONE, 0, 0, 0, 1, 1, ALWAYS, "learn the inertia under a large torque; needs the map")
 PARAMETER(73, encoder_counts, NONE, 0, 0, 16, 65536, 4096, STOPPED, "counts of the reference encoder per turn")
 
 // Control
@@ -49,14 +48,13 @@ PARAMETER(84, speed_pi_bandwidth, RAD_PER_S, 8, 1, 10, 2000, 200, STOPPED, "natu
 PARAMETER(85, speed_pi_damping, NONE, 12, 2, 30, 6000, 80, STOPPED, "damping of the PI speed loop")
 PARAMETER(86, speed_ramp, RPM_PER_S, 8, 0, 0, 100000, 3000, ALWAYS, "slope of the speed reference, 0 for a step")
 PARAMETER(90, position_hold, PER_S, 8, 1, 0, 200, 50, ALWAYS,
-          "how fast the shaft is brought back to where it stood, at a speed reference of zero; 0 lets it creep")
+          "how fast a shaft at rest is brought back; 0 lets it creep")
 PARAMETER(87, voltage_use, PERCENT, 16, 1, 500, 1000, 900, ALWAYS,
-          "share of Vdc/sqrt(3) that field weakening leaves to the voltage")
+          "share of the largest voltage that field weakening leaves")
 PARAMETER(88, weakening_limit, A, 20, 2, 0, 10000, 1200, STOPPED, "largest field-weakening current")
 PARAMETER(89, weakening_gain, A_PER_V, 20, 4, 0, 1000, 20, ALWAYS, "integral gain of field weakening per millisecond")
 
 PARAMETER(330, mtpa, NONE, 0, 0, 0, 1, 0, ALWAYS, "1 adds the d-axis current that gives the most torque per ampere")
-PARAMETER(331, current_divider, NONE, 0, 0, 1, 2, 1, STOPPED,
-          "PWM periods per step of the current control; 2 allows current_bandwidth up to 2080")
+PARAMETER(331, current_divider, NONE, 0, 0, 1, 2, 1, STOPPED, "PWM periods per step of the current control")
 PARAMETER(332, current_corner, NONE, 0, 0, 0, 1, 0, STOPPED,
-          "corner of the current controllers' integrator: 0 a quarter of current_bandwidth, 1 the machine's R/L")
+          "corner of the current's integrator: 0 a quarter of current_bandwidth, 1 R/L")

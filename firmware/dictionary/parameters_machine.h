@@ -3,14 +3,13 @@
 // Machine (nameplate of motor A)
 PARAMETER(1, pole_pairs, NONE, 0, 0, 1, 30, 4, STOPPED, "pole pairs")
 PARAMETER(10, current_scale, NONE, 0, 0, -6, 6, 0, STOPPED,
-          "power of two of all currents' ranges, 0 for sensors of 20 to 40 A; set it first: what is in A, Nm, ohm, mH "
-          "keeps its share of the range")
+          "power of two of all ranges of currents, 0 for 20 to 40 A; set it first")
 PARAMETER(11, voltage_scale, NONE, 0, 0, -6, 6, 0, STOPPED,
-          "the same of all voltages, 0 for a link_full_scale of 225 to 450 V")
+          "power of two of all ranges of voltages, 0 for 225 to 450 V; set it first")
 PARAMETER(2, stator_resistance, OHM, 24, 4, 10, 200000, 3200, STOPPED, "stator resistance of a phase")
 PARAMETER(3, inductance_d, MH, 20, 3, 50, 200000, 4900, STOPPED, "d-axis inductance")
 PARAMETER(4, inductance_q, MH, 20, 3, 50, 200000, 7800, STOPPED, "q-axis inductance, at least that of the d-axis")
-PARAMETER(5, magnet_flux, VS, 28, 5, 200, 90000, 16000, STOPPED, "magnet flux linkage (peak, amplitude invariant)")
+PARAMETER(5, magnet_flux, VS, 28, 5, 200, 90000, 16000, STOPPED, "magnet flux linkage, peak")
 PARAMETER(6, inertia, KGM2, 24, 6, 10, 500000, 4550, STOPPED, "inertia of rotor and load")
 PARAMETER(7, friction, NMS, 24, 5, 0, 50000, 300, STOPPED, "viscous friction")
 PARAMETER(8, current_limit, A, 20, 2, 50, 10000, 1400, STOPPED, "largest phase current, peak")

@@ -2,7 +2,7 @@
 
 // I-F start: a current vector that turns open-loop until the position source can take over
 PARAMETER(340, start_method, NONE, 0, 0, 0, 1, 0, STOPPED,
-          "how a standing shaft is started: 0 by its saliency, 1 turned by a current vector (I-F)")
+          "start of a standing shaft: 0 by its saliency, 1 turned by a current vector (I-F)")
 PARAMETER(341, if_current, A, 20, 2, 20, 10000, 800, STOPPED, "length of the current vector")
 PARAMETER(342, if_align, MS, 0, 0, 10, 5000, 500, STOPPED, "time that the current vector rests before it turns")
 PARAMETER(343, if_acceleration, RPM_PER_S, 8, 0, 10, 100000, 500, STOPPED, "acceleration of the current vector")
@@ -40,17 +40,16 @@ PARAMETER(102, divergence_time, MS, 0, 0, 1, 1000, 15, ALWAYS, "time above diver
 PARAMETER(103, polarity_check, NONE, 0, 0, 0, 1, 1, STOPPED,
           "test the polarity of the magnet at start, and by the back-EMF once the shaft turns")
 PARAMETER(522, wiring_check, NONE, 0, 0, 0, 1, 1, STOPPED,
-          "look at the start whether phases and current sensors are wired as they should be; needs flying_start")
+          "look at the wiring of phases and current sensors at the start; needs flying_start")
 PARAMETER(160, stop_time, MS, 0, 0, 10, 60000, 1000, ALWAYS,
-          "time to standstill after a stop has brought the reference to zero; longer is a fault")
+          "longest time to standstill after a stop has brought the reference to zero")
 PARAMETER(521, stall_time, MS, 0, 0, 0, 60000, 2000, ALWAYS,
-          "time at the current limit with a shaft that does not follow, before the fault; 0: no such fault")
+          "time at the current limit with a shaft that does not follow, before the fault; 0: none")
 PARAMETER(161, synchronism_floor, V, 16, 1, 5, 1000, 40, ALWAYS, "EMF error allowed at any speed, see synchronism_time")
 PARAMETER(162, synchronism_share, PERCENT, 8, 0, 10, 100, 60, ALWAYS, "share of the EMF added to synchronism_floor")
 PARAMETER(163, synchronism_time, MS, 0, 0, 1, 1000, 5, ALWAYS,
           "time of an EMF error at its limit, or of estimators a quarter turn apart, before the fault")
-PARAMETER(164, link_regulation, V, 16, 1, 100, 15000, 4050, ALWAYS,
-          "DC-link voltage above which braking is reduced, to nothing two thirds of the way to link_maximum")
+PARAMETER(164, link_regulation, V, 16, 1, 100, 15000, 4050, ALWAYS, "DC-link voltage above which braking is reduced")
 
 // The start
 PARAMETER(150, flying_start, NONE, 0, 0, 0, 1, 1, STOPPED, "look for a turning shaft before the start")
@@ -59,4 +58,4 @@ PARAMETER(151, start_current, A, 20, 2, 20, 10000, 1000, STOPPED,
 PARAMETER(152, saturation_d, PERCENT_PER_A, 24, 3, -10000, 10000, 0, STOPPED,
           "change of the incremental Ldd per ampere of i_d")
 PARAMETER(153, hold_time, MS, 0, 0, 0, 5000, 0, STOPPED,
-          "for how long after the start a standing shaft is held stiffly, for a brake to open; needs the map")
+          "time after the start that the shaft is held stiffly, for a brake to open; needs the map")

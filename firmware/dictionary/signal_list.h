@@ -24,7 +24,7 @@ SIGNAL(voltage_alpha, V, 16, DRIVE, d->modulation.command_q16.alpha,
        "alpha-axis mean voltage for the next period, device drops added")
 SIGNAL(voltage_beta, V, 16, DRIVE, d->modulation.command_q16.beta, "beta-axis mean voltage for the next period")
 SIGNAL(deviation_q, A_PER_S, 8, ROTOR, q_mul_sat(d->position.deviation_q20, 10000L, 12),
-       "q-axis current deviation under zero vectors, D of the paper; position_source 0 and 1 only")
+       "q-axis current deviation under zero vectors; position_source 0 and 1 only")
 SIGNAL(link_voltage, V, 16, DRIVE, d->samples.link_q16, "DC-link voltage")
 SIGNAL(load_torque, NM, 16, ROTOR, q_mul_sat(d->position.selected.load_accel_q8, d->model.torque_per_accel_q24, 24),
        "estimated load torque")
@@ -35,7 +35,7 @@ SIGNAL(polarity_sigma, NONE, 8, DRIVE, d->found.sigma_q8,
 SIGNAL(load_angle, TURN, 32, ROTOR, load_angle(d->position.flux),
        "estimated angle of the stator flux ahead of the rotor")
 SIGNAL(current_a, A, 20, DRIVE, phase_current(d, false),
-       "current of phase a as its sensor reads it, with the gates off as well: mean of the period's windows")
+       "current of phase a as its sensor reads it, with the gates off as well")
 SIGNAL(current_b, A, 20, DRIVE, phase_current(d, true), "current of phase b, as current_a")
 SIGNAL(speed_known, NONE, 0, DRIVE, (known & KNOWN_ROTOR) != 0u,
        "1: angle and speed are the rotor's; 0: unknown, the shaft may turn")

@@ -1,8 +1,8 @@
 // The units of parameters and signals. UNIT(unit, text, current, voltage): how often the unit has that of a current and
 // that of a voltage in it, time aside: a torque is a power for a speed, so it has each once. current_scale and
-// voltage_scale move what has any of them (units.h). No include guard: it is included with different meanings of UNIT.
+// voltage_scale move what has any of them (units.h); these come first. No include guard: it is included with different
+// meanings of UNIT.
 
-UNIT(NONE, "", 0, 0)
 UNIT(A, "A", 1, 0)
 UNIT(MA, "mA", 1, 0)
 UNIT(A_PER_S, "A/s", 1, 0)
@@ -17,6 +17,7 @@ UNIT(A_PER_V, "A/V", 1, -1)
 UNIT(NM, "Nm", 1, 1)
 UNIT(NMS, "Nms", 1, 1)
 UNIT(KGM2, "kgm2", 1, 1)
+UNIT(NONE, "", 0, 0)
 UNIT(PERCENT, "%", 0, 0)
 UNIT(US, "us", 0, 0)
 UNIT(MS, "ms", 0, 0)

@@ -4,20 +4,17 @@
 #include "firmware/text/text.h"
 #include "hal/qmath/qmath.h"
 
-typedef struct {
-  int16_t current : 8;
-  int16_t voltage : 8;
-} powers_t;
-
-#define UNIT(unit, text, current, voltage) {current, voltage},
-static const powers_t powers[UNITS] = {
+// Both powers of a unit, -1 .. 2, as octets of a word.
+#define UNIT(unit, text, current, voltage) (int16_t)((current) * 256 + (voltage)),
+static const int16_t powers[UNITS] = {
 #include "firmware/dictionary/unit_list.h"
 };
 #undef UNIT
 
 int16_t unit_exponent(uint16_t unit) {
-  const powers_t of = powers[unit];
-  return (int16_t)(of.current * (int16_t)parameters.current_scale + of.voltage * (int16_t)parameters.voltage_scale);
+  const int16_t current = (int16_t)q_shr(powers[unit] + 128, 8);
+  const int16_t voltage = (int16_t)(powers[unit] - current * 256);
+  return (int16_t)(current * (int16_t)parameters.current_scale + voltage * (int16_t)parameters.voltage_scale);
 }
 
 uint16_t unit_q(uint16_t unit, uint16_t q) { return (uint16_t)((int16_t)q - unit_exponent(unit)); }
@@ -32,8 +29,6 @@ uint16_t unit_decimals(uint16_t unit, uint16_t decimals) {
 uint16_t unit_scales(void) {
   return (uint16_t)((uint16_t)parameters.current_scale * 16u + (uint16_t)parameters.voltage_scale);
 }
-
-packed_text_t unit_text(uint16_t unit) { return (packed_text_t)(TEXT_UNIT_NONE + unit); }
 
 void put_quantity(octet_writer_t* w, int32_t raw, uint16_t unit, uint16_t q, uint16_t decimals) {
   put_fixed(w, raw, unit_q(unit, q), unit_decimals(unit, decimals));

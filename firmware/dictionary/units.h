@@ -33,7 +33,7 @@ uint16_t unit_q(uint16_t unit, uint16_t q);
 uint16_t unit_decimals(uint16_t unit, uint16_t decimals);
 /// A number that changes when a scale does.
 uint16_t unit_scales(void);
-packed_text_t unit_text(uint16_t unit);
+static inline packed_text_t unit_text(uint16_t unit) { return (packed_text_t)(TEXT_UNIT_A + unit); }
 /// The number in user's units, without the unit.
 void put_quantity(octet_writer_t* w, int32_t raw, uint16_t unit, uint16_t q, uint16_t decimals);
 

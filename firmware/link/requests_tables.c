@@ -110,7 +110,7 @@ static void put_build(octet_writer_t* w) {
 }
 
 static answer_status_t request_identity(request_t* r) {
-  if (!sum.complete || sum.scales != unit_scales()) return ANSWER_BUSY;
+  if (!sum.complete) return ANSWER_BUSY;
   put_u16(&r->answer, LINK_PROTOCOL);
   put_u16(&r->answer, parameter_count());
   put_u16(&r->answer, signal_count());

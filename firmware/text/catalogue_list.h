@@ -19,8 +19,7 @@ WORDS(LIMIT, 4, "braking reduced by the DC link")
 
 WORDS(VERDICT, 0, "plausible, in use")
 WORDS(VERDICT, 1, "not measured: too few usable periods, or the current did not reach its level")
-WORDS(VERDICT, 2,
-      "the points scatter too much around the fitted line: current too small, shaft moved, or a loose contact")
+WORDS(VERDICT, 2, "the points scatter too much: current too small, shaft moved, or a loose contact")
 WORDS(VERDICT, 3, "too far from the value given before: check nameplate, connection and current range")
 WORDS(VERDICT, 4, "two ways of measuring it disagree: load on the shaft, or wrong pole_pairs")
 WORDS(VERDICT, 5, "outside of the parameter's range")

@@ -115,7 +115,7 @@ TEST_F(ConsoleLines, FaultsWithTheirCircumstances) {
 
 // A star before what is not the default; a part that was asked for is forgotten with the next list.
 TEST_F(ConsoleLines, AParametersRow) {
-  const std::string meaning = "for how long after the start a standing shaft is held stiffly, for a brake to open";
+  const std::string meaning = "time after the start that the shaft is held stiffly, for a brake to open";
   EXPECT_EQ(command("list hold_time").rfind(to(to("hold_time", 23) + "0 ms", 42) + meaning, 0), 0u);
   parameters.hold_time = 100;
   EXPECT_EQ(command("list HOLD_TIME").rfind(to(to("hold_time", 22) + "*100 ms", 42) + meaning, 0), 0u);
