@@ -56,6 +56,9 @@ VALUES = "enum {\n  POSITION_ENCODER = 0,  // measured\n  POSITION_AVV = 3\n};\n
         "bool f(const drive_t* d) { return d->source == &avv_source; }",
         "bool f(const drive_t* d) { return d->source != position_sources[POSITION_AVV]; }",
         "bool f(const drive_t* d) { return position_sources[parameters.position_source] != d->source; }",
+        "bool f(drive_t* d) { const position_source_t* s = position_sources[POSITION_AVV]; return d->source != s; }",
+        "bool f(drive_t* d) { const position_source_t *s = &avv_source, *t = s; return t == d->source; }",
+        "bool f(drive_t* d) { d->wanted = position_sources[POSITION_AVV]; return d->source == d->wanted; }",
     ],
 )
 def test_question_which_source_is_chosen_is_caught(tmp_path: Path, line: str) -> None:
@@ -70,6 +73,9 @@ def test_question_which_source_is_chosen_is_caught(tmp_path: Path, line: str) ->
         "uint16_t f(void) { return position_sources[parameters.position_source]->traits; }",
         "estimator_output_t f(drive_t* d) { return position_sources[POSITION_AVV]->step(d, NULL); }",
         "bool f(const drive_t* d) { return (d->source->traits & SOURCE_MEASURES) != 0u; }",
+        "bool f(void) {\n  const void* s = position_sources[POSITION_AVV];\n  return NULL != s && s != NULL;\n}",
+        "bool f(const state_t* s) {\n  const position_source_t* o = position_sources[POSITION_AVV];\n"
+        "  return s->kind == o->traits;\n}\nbool g(const int* o, const int* p) {\n  return p == o;\n}",
         "// parameters.position_source == POSITION_AVV",
         'const char* f(void) { return "POSITION_AVV"; }',
     ],
@@ -78,6 +84,13 @@ def test_source_that_is_looked_up_passes(tmp_path: Path, line: str) -> None:
     plant(tmp_path, "firmware/dictionary/parameters.h", VALUES)
     plant(tmp_path, "firmware/drive/speed.c", line + "\n")
     assert comparisons.check(tmp_path) == []
+
+
+def test_each_comparison_that_is_borne_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    borne = {file for file, _ in comparisons.BORNE}
+    assert comparisons.check(ROOT) == []
+    monkeypatch.setattr(comparisons, "BORNE", {})
+    assert {finding.path for finding in comparisons.check(ROOT)} == borne
 
 
 INTERRUPT = """

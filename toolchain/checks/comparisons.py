@@ -1,7 +1,8 @@
 """Nobody asks which position source is chosen: a source says of itself what others have to know (interfaces/source.h).
 
 ``position_source``, and the names of its values, stand in firmware/ as what a table is looked up by, and nowhere else;
-the row that the table gives is compared with no other. The files of OWN make the table and know their own rows.
+the row that the table gives is compared with no other, by whatever name it has been given in a function; whether there
+is one may be asked. The files of OWN make the table and know their own rows.
 """
 
 import re
@@ -16,10 +17,34 @@ OWN = {
     "firmware/dictionary/parameters.h": "names the values",
     "firmware/sources/flux/flux.c": "its four methods are four rows that differ in their number",
 }
+# A name in a file that is compared all the same, and why.
+BORNE = {("firmware/drive/position.c", "flux"): "begins beside whichever source has the shaft, once where it has it"}
 _ENUM = re.compile(r"enum\s*\{([^}]*\bPOSITION_ENCODER\b[^}]*)\}")
 _LOOKED_UP = re.compile(rf"\b{TABLE}\s*\[[^\]]*\]")
 _ROW = r"&\s*\w+_source\b"
 _COMPARED = re.compile(rf"[=!]=\s*(?:{_ROW}|{TABLE}\b)|(?:{_ROW}|{TABLE}\s*\[[^\]]*\])\s*[=!]=")
+_NAMED = r"((?:\w+(?:->|\.))*\w+)\s*=\s*(?:{})"  # an expression that such a row is assigned to
+
+
+def _names(body: str) -> set[str]:
+    """What means a row of the table in the rest of a function, by way of other names as well."""
+    found: set[str] = set()
+    rows = [_ROW, rf"{TABLE}\s*\[[^\]]*\]"]
+    while fresh := set(re.findall(_NAMED.format("|".join(rows)), body)) - found:
+        found |= fresh
+        rows += [rf"{re.escape(name)}\b(?!\s*(?:->|\.))" for name in fresh]
+    return found
+
+
+def _compared_by_name(text: str, borne: set[str]) -> Iterator[int]:
+    """Where a row is compared by a name that it has, with anything but NULL."""
+    start = 0
+    for end in (match.end() for match in re.finditer(r"^(?:\S.*)?\}$|\Z", text, re.MULTILINE)):
+        body = text[start:end]
+        for name in map(re.escape, _names(body) - borne):
+            asked = rf"(?<!NULL)(?<!NULL )[=!]=\s*{name}\b(?!\s*(?:->|\.))|(?<![\w.>]){name}\s*[=!]=(?!\s*NULL\b)"
+            yield from (start + match.start() for match in re.finditer(asked, body))
+        start = end
 
 
 def _values(root: Path) -> list[str]:
@@ -27,10 +52,11 @@ def _values(root: Path) -> list[str]:
     return re.findall(r"\b(POSITION_\w+)", enum[1]) if enum else []
 
 
-def _asked(text: str, values: list[str]) -> Iterator[int]:
+def _asked(text: str, values: list[str], borne: set[str]) -> Iterator[int]:
     """Where a source, or its number, is asked for."""
     names = re.compile(rf"(?:\.|->)\s*position_source\b|\b(?:{'|'.join(['ID_position_source', *values])})\b")
     yield from (match.start() for match in _COMPARED.finditer(text))
+    yield from _compared_by_name(text, borne)
     rest = _LOOKED_UP.sub(lambda found: re.sub(r"[^\n]", " ", found[0]), text)
     yield from (match.start() for match in names.finditer(rest))
 
@@ -41,8 +67,10 @@ def check(root: Path) -> list[Finding]:
     findings = []
     for path in sorted((root / "firmware").rglob("*.[ch]")):
         source = path.relative_to(root).as_posix()
-        text = code(path)
-        for line in sorted({text.count("\n", 0, at) + 1 for at in _asked(text, values)} if source not in OWN else ()):
+        if source in OWN:
+            continue
+        text, borne = code(path), {name for file, name in BORNE if file == source}
+        for line in sorted({text.count("\n", 0, at) + 1 for at in _asked(text, values, borne)}):
             message = "asks which position source is chosen: what it has to know is a trait or a hook of the source"
             findings.append(Finding(source, line, message))
     return findings
