@@ -27,10 +27,11 @@ from stillspin.runs.execute import Settings
 LENGTH = 0.8
 
 
-def job(identifier="A10", *, image=None, **changed):
+def job(identifier="A10", *, image=None, motor="", **changed):
     native = core.load()
     scenario = scenario_file.load(identifier)
-    chosen = profile.load("bench", core.plant_schema(native), core.parameters(native), scenario.motor)
+    known = core.parameters(native)
+    chosen = profile.load(motor or "bench", core.plant_schema(native), known, motor or scenario.motor)
     made = execute.prepare(scenario, Settings(chosen, profile.Changes(), 1, "", image=image), native)[0]
     return replace(made, run=replace(made.run, **{"duration": LENGTH, "waveform": None, "reached": (), **changed}))
 
@@ -47,6 +48,7 @@ def through_the_port(wanted, progress=None):
     return closed_loop.play_on(firmware(wanted), wanted, progress, columns())
 
 
+MEANS = ("true_speed", "est_speed", "i_q_ref")
 STEPS = {
     "commands": ((0.0, "speed_ref_rpm", 300.0), (0.4, "set:speed_ramp", 4000.0), (0.45, "speed_ref_rpm", 350.0)),
     "load": ((0.3, 0.0), (0.35, 0.5)),
@@ -72,6 +74,17 @@ def test_steps_given_over_the_port_do_what_the_native_runs_do(both):
     for name, band in (("true_speed", 15.0), ("est_speed", 15.0), ("speed_ref", 15.0), ("load_torque", 0.05)):
         same = np.interp(time[late], native.signals["time"], native.signals[name])
         assert np.max(np.abs(seen.signals[name][late] - same)) < band, name
+
+
+def test_a_motor_of_another_size_is_told_and_read_in_its_own_amperes():
+    """400 A are beyond the formats until the scales are told, and its table is another one from then on."""
+    wanted = job(motor="hsm1_300v", commands=((0.0, "speed_ref_rpm", 300.0),), load=((0.0, 0.0), (0.3, 20.0)))
+    seen, native = through_the_port(wanted), execute.play(core.load(), wanted, None)
+    assert seen.completed and native.completed, (seen.reason, native.reason)
+    means = {name: [np.mean(s[name][s["time"] > 0.5]) for s in (seen.signals, native.signals)] for name in MEANS}
+    for name, (port, own) in means.items():
+        assert port == pytest.approx(own, rel=0.03), name
+    assert means["i_q_ref"][1] > 32.0, "amperes, where the formats have a sixteenth of that"
 
 
 def test_an_angle_is_held_against_that_of_its_own_period(both):

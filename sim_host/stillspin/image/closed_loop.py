@@ -9,7 +9,7 @@ from __future__ import annotations
 import struct
 import time
 from bisect import bisect_right
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -22,7 +22,7 @@ from stillspin.counted import counted
 from stillspin.drive import describe, values
 from stillspin.drive.protocol import CONTROL_PERIOD, STREAM_EVENT, Command, Request, Words
 from stillspin.drive.state import FAULT, READY, RUN, RawStatus
-from stillspin.drive.table import Table
+from stillspin.drive.table import SCALES, Table
 from stillspin.errors import StillspinError
 from stillspin.image import opened
 from stillspin.image.opened import Image
@@ -160,8 +160,21 @@ class _ClosedLoop:
             who = describe.identity(ask)
         except NoAnswerError:
             return False
-        self._table = describe.table(ask, who, remembers=False)
+        self._read_table(who)
         return True
+
+    def _read_table(self, who: describe.Identity) -> None:
+        self._table = describe.table(self._client.ask, who, remembers=False)
+
+    def _set_parameters(self, wanted: Mapping[str, float]) -> None:
+        """The scales first: formats and ranges of all others follow from them."""
+        scales = {name: value for name, value in wanted.items() if name in SCALES}
+        for part in (scales, {name: value for name, value in wanted.items() if name not in SCALES}):
+            for name, value in part.items():
+                assert self._table is not None
+                values.change(self._client.ask, self._table.parameter(name), value)
+            if part is scales and scales:
+                self._read_table(describe.identity(self._client.ask))
 
     def _say_what_cannot_be(self) -> None:
         run, words = self._job.run, []
@@ -180,9 +193,7 @@ class _ClosedLoop:
 
     def _start(self) -> None:
         self._wait_for_ready()
-        assert self._table is not None
-        for name, value in self._job.parameters.items():
-            values.change(self._client.ask, self._table.parameter(name), value)
+        self._set_parameters(self._job.parameters)
         self._client.align()
         self._open_stream()
         if self._left and self._left[0][1] == "speed_ref_rpm" and self._left[0][0] <= 0.0:
