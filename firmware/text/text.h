@@ -20,7 +20,7 @@ extern "C" {
 
 void put_unsigned(octet_writer_t* w, uint32_t value);
 
-/// raw / 2^q with so many decimals; q = 0..32, decimals = 0..9.
+/// raw / 2^q with so many decimals; q = 0..40, decimals = 0..9.
 void put_fixed(octet_writer_t* w, int32_t raw, uint16_t q, uint16_t decimals);
 
 /// Fills up with spaces to a column, counted from where the line began in the block.

@@ -101,7 +101,7 @@ void put_message(octet_writer_t* w, catalogue_t kind, uint16_t code);
     ensures w->count <= w->room; ensures w->full == 0 || w->full == 1; */
 void put_unsigned(octet_writer_t* w, uint32_t value);
 
-/*@ requires \valid(w) && q <= 32 && decimals <= 9;
+/*@ requires \valid(w) && q <= 40 && decimals <= 9;
     assigns w->octets[0 .. w->room - 1], w->count, w->full \from w->count, w->room, raw, q, decimals;
     ensures w->count <= w->room; ensures w->full == 0 || w->full == 1; */
 void put_fixed(octet_writer_t* w, int32_t raw, uint16_t q, uint16_t decimals);
@@ -117,7 +117,7 @@ void put_spaces_to(octet_writer_t* w, uint16_t column);
     ensures number->decimals <= 9; ensures -2147483647 <= number->digits; */
 uint16_t text_number(const uint16_t* text, uint16_t count, decimal_t* number);
 
-/*@ requires \valid_read(number) && number->decimals <= 9 && q <= 32 && \valid(raw);
+/*@ requires \valid_read(number) && number->decimals <= 9 && q <= 40 && \valid(raw);
     assigns *raw, \result \from *number, q; ensures \initialized(raw);
     ensures \result == 0 || \result == 1; */
 bool decimal_raw(const decimal_t* number, uint16_t q, int32_t* raw);

@@ -107,7 +107,7 @@ void prove_numbers(void) {
   any_word();
   for (uint16_t count = 0; count <= EDITOR_LINE; count++) (void)text_number(word.text, count, &number);
   for (uint16_t kind = 0; kind < CATALOGUES; kind++) words_of(kind);
-  for (uint16_t q = 0; q <= 32u; q++) {
+  for (uint16_t q = 0; q <= 40u; q++) {
     for (uint16_t decimals = 0; decimals <= TEXT_DECIMALS_MAX; decimals++) one_format(q, decimals);
   }
 }
