@@ -171,7 +171,7 @@ def test_the_console_answers_among_records(desk, port):
 
 
 def test_the_console_ends_with_1_when_the_drive_refuses(port, home):
-    lines = ["set speed_limit 7000", "ref 300", "start now", "version", "scope trigger speed above 40000"]
+    lines = ["set speed_limit 70000", "ref 300", "start now", "version", "scope trigger speed above 40000"]
     typed = [part for line in lines for part in ("-c", line)]
     result = CliRunner().invoke(cli.app, ["console", *typed, "--drive", port])
     assert result.exit_code == 1
@@ -220,7 +220,7 @@ def test_a_speed_beyond_the_limit_names_what_holds_now_and_what_sets_it(desk, ty
 
 
 def test_pole_pairs_stay_whole_and_a_comma_is_no_point(desk):
-    with pytest.raises(InputError, match=r"pole_pairs: 2\.5 is not a whole number; 1 … 20"):
+    with pytest.raises(InputError, match=r"pole_pairs: 2\.5 is not a whole number; 1 … 30"):
         desk.set("pole_pairs", "2.5")
     with pytest.raises(InputError, match="no comma"):
         desk.set("current_limit", "1,5")

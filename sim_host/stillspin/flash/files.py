@@ -50,7 +50,7 @@ def read_boot_rom(path: Path) -> tuple[Block, ...]:
         if not data or len(data) % 2 or len(data) > 2 * len(rom):
             raise InputError(
                 f"{path}: {counted(len(data), 'octet')} are no dump of the boot ROM (words from 0x{rom.start:06X} on, "
-                f"low octet first, {2 * len(rom)} octets at most); give one, or {_FORMATS}"
+                f"low octet first, at most {counted(2 * len(rom), 'octet')}); give one, or {_FORMATS}"
             )
         return (Block(rom.start, struct.unpack(f"<{len(data) // 2}H", data)),)
     parts = []
