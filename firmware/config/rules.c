@@ -11,9 +11,8 @@
 #include "hal/hal_pwm.h"
 #include "hal/qmath/qcall.h"
 
-#define SAMPLING_MIN_Q16 294912L    // 4.5 us: two bursts and the shortest useful time between them
-#define EDGE_SHIFT_MAX_Q16 157286L  // 2.4 us: the room that the modulator keeps before the first edge
-
+#define SAMPLING_MIN_Q16 294912L         // 4.5 us: two bursts and the shortest useful time between them
+#define EDGE_SHIFT_MAX_Q16 157286L       // 2.4 us: the room that the modulator keeps before the first edge
 #define ELECTRICAL_MAX_RPM_Q8 15360000L  // 1 kHz: ten control interrupts to a turn
 
 // Peak line-to-line EMF at the speed limit, V Q16: sqrt(3) lambda w.

@@ -165,8 +165,6 @@ nb::list parameter_rows() {
     row["minimum"] = std::ldexp(parameter_minimum(p), -p->q);
     row["maximum"] = std::ldexp(parameter_maximum(p), -p->q);
     row["default"] = std::ldexp(parameter_initial(p), -p->q);
-    const Powers powers = powers_of(*p);
-    row["powers"] = nb::make_tuple(powers.current, powers.voltage);
     row["access"] = p->access == PARAMETER_ALWAYS ? "always" : "stopped";
     row["help"] = text_of(parameter_meaning(p));
     rows.append(row);

@@ -7,6 +7,10 @@
 namespace stillspin::bench {
 namespace {
 
+struct Powers {
+  int current, voltage;
+};
+
 #define UNIT(unit, text, current, voltage) {current, voltage},
 constexpr Powers kPowers[] = {
 #include "firmware/dictionary/unit_list.h"
@@ -24,10 +28,8 @@ Scale Scale::of(const std::map<std::string, double>& parameters) {
   return {whole(parameters, "current_scale"), whole(parameters, "voltage_scale")};
 }
 
-Powers powers_of(const parameter_info_t& p) { return kPowers[p.unit]; }
-
 int Scale::q(const parameter_info_t& p) const {
-  const Powers powers = powers_of(p);
+  const Powers& powers = kPowers[p.unit];
   return p.q - powers.current * current - powers.voltage * voltage;
 }
 

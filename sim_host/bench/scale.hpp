@@ -11,12 +11,6 @@
 
 namespace stillspin::bench {
 
-/// How often a parameter's unit has that of a current and that of a voltage in it.
-struct Powers {
-  int current, voltage;
-};
-Powers powers_of(const parameter_info_t& p);
-
 /// The parameters current_scale and voltage_scale.
 struct Scale {
   int current = 0;

@@ -17,7 +17,7 @@ from typing import Any, Protocol, cast
 
 import numpy.typing as npt
 
-from stillspin import extras
+from stillspin import extras, scales
 from stillspin.core_board import NativeBoard
 from stillspin.core_loader import NativeLoader
 from stillspin.core_loop import NativeStepLoop, NativeStepLoops
@@ -164,8 +164,6 @@ BOARD = "STILLSPIN_BOARD"
 
 
 NOT_INSTALLED = f"this needs the virtual drive, which is missing: {extras.remedy('virtual')}"
-CURRENT_SCALE, VOLTAGE_SCALE = "current_scale", "voltage_scale"
-"""Parameters that move the ranges of those that have amperes or volts in their units."""
 PARAMETERS = "parameters.json"
 """The firmware's parameter table in a wheel, which has no native module to ask; toolchain/wheel.py puts it there."""
 
@@ -317,7 +315,6 @@ def _parameter_entry(row: Mapping[str, Any]) -> Entry:
         number=int(row["id"]),
         decimals=decimals,
         whole=bool(row["whole"]),
-        powers=(int(row["powers"][0]), int(row["powers"][1])),
     )
 
 
@@ -326,8 +323,13 @@ def at_scale(known: Mapping[str, Entry], told: Mapping[str, Any]) -> dict[str, E
 
     Its `current_scale` and `voltage_scale` move range and default of all that has amperes or volts in it.
     """
-    current, voltage = (round(float(told.get(name, 0.0))) for name in (CURRENT_SCALE, VOLTAGE_SCALE))
-    return {name: entry.at_scale(current, voltage) for name, entry in known.items()}
+    return {name: entry.at_scale(scales.of(told)) for name, entry in known.items()}
+
+
+def at_some_scale(known: Mapping[str, Entry]) -> dict[str, Entry]:
+    """The parameters with all that they may be in some drive: for files that do not say in which."""
+    most = max((round(known[name].maximum or 0.0) for name in scales.SCALES if name in known), default=0)
+    return {name: entry.at_some_scale(most) for name, entry in known.items()}
 
 
 def parameter(known: Mapping[str, Entry], name: str, value: object, where: str) -> float:

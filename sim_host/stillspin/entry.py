@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from stillspin import json_schema
+from stillspin import scales as scales_of_boards
 from stillspin.json_schema import Json
 from stillspin.quantity import Range
+from stillspin.scales import Pair
 
 Value = float | int | bool | str
-_DECIMALS_MAX = 9  # UNIT_DECIMALS_MAX of units.h
 
 
 @dataclass(frozen=True)
@@ -28,24 +29,29 @@ class Entry:
     number: int = 0
     decimals: int = 0
     whole: bool = False
-    powers: tuple[int, int] = (0, 0)
-    """How often a parameter's unit has that of a current and that of a voltage in it."""
     exponent: int = 0
     """Powers of two by which its range is moved (`at_scale`)."""
 
-    def at_scale(self, current: int, voltage: int) -> Entry:
-        """The same in a drive with these values of current_scale and voltage_scale."""
-        exponent = self.powers[0] * current + self.powers[1] * voltage
-        if exponent == self.exponent:
+    def at_scale(self, scales: Pair) -> Entry:
+        """A parameter in a drive with these scales."""
+        exponent = scales_of_boards.exponent(self.unit, scales)
+        if exponent == self.exponent or not self.access:
             return self
         factor = 2.0 ** (exponent - self.exponent)
         minimum, maximum = (None if bound is None else bound * factor for bound in (self.minimum, self.maximum))
         return replace(self, exponent=exponent, minimum=minimum, maximum=maximum, default=float(self.default) * factor)
 
+    def at_some_scale(self, most: int) -> Entry:
+        """A parameter with all that it may be in a drive whose scales are -most to most."""
+        corners = [self.at_scale((current, voltage)) for current in (-most, most) for voltage in (-most, most)]
+        low = [each.minimum for each in corners if each.minimum is not None]
+        high = [each.maximum for each in corners if each.maximum is not None]
+        return replace(self, minimum=min(low, default=None), maximum=max(high, default=None))
+
     @property
     def places(self) -> int:
         """Decimals that show what `decimals` show where both scales are 0."""
-        return min(self.decimals + (3 * max(0, -self.exponent) + 9) // 10, _DECIMALS_MAX)
+        return scales_of_boards.decimals(self.decimals, self.exponent)
 
     @property
     def range_text(self) -> str:

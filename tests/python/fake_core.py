@@ -14,7 +14,6 @@ from types import SimpleNamespace
 import numpy as np
 
 from stillspin.drive.protocol import VERSION, Request
-from stillspin.drive.table import POWERS
 from stillspin.link.records import ANSWER, Record, to_wire
 from stillspin.link.splitter import Splitter
 
@@ -206,10 +205,7 @@ def plant_schema():
 def parameters():
     names = ("id", "name", "unit", "decimals", "minimum", "maximum", "default", "access", "help")
     whole = ("pole_pairs", "excitation", "observer_windows", "speed_law")
-    return [
-        dict(zip(names, row, strict=True)) | {"whole": row[1] in whole, "powers": POWERS.get(row[2], (0, 0))}
-        for row in _PARAMETERS
-    ]
+    return [dict(zip(names, row, strict=True)) | {"whole": row[1] in whole} for row in _PARAMETERS]
 
 
 def names():

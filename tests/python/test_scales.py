@@ -9,7 +9,7 @@ import pytest
 
 from stillspin import can, core
 from stillspin.cases import nameplate, profile
-from stillspin.drive.table import POWERS, SCALES
+from stillspin.scales import POWERS, SCALES, exponent
 
 ROOT = Path(__file__).resolve().parents[2]
 PLANT = {
@@ -38,7 +38,7 @@ def test_the_client_knows_the_units_as_the_firmware_does(native):
     scaled = {unit: powers for unit, powers in listed_units().items() if powers != (0, 0)}
     assert scaled == POWERS
     for row in native.parameters():
-        assert tuple(row["powers"]) == POWERS.get(row["unit"], (0, 0)), row["name"]
+        assert row["unit"] in listed_units(), row["name"]
 
 
 def larger(value, powers, scales):
@@ -54,7 +54,7 @@ def ran(native, scales):
         for key, powers in keys.items():
             value = plant.get(section, {}).get(key, schema[section][key].default)
             plant.setdefault(section, {})[key] = larger(value, powers, scales)
-    told = {name: larger(value, known[name].powers, scales) for name, value in chosen.parameters.items()}
+    told = {name: value * 2.0 ** exponent(known[name].unit, scales) for name, value in chosen.parameters.items()}
     told |= dict(zip(SCALES, map(float, scales), strict=True))
     load = larger(4.0, (1, 1), scales)
     result = native.run(
@@ -110,3 +110,13 @@ def test_a_bus_is_described_in_the_steps_of_its_node():
             assert (
                 scaled.get_message_by_name(message.name).get_signal_by_name(signal.name).scale == signal.scale * factor
             )
+
+
+def test_a_schema_without_a_board_allows_what_some_board_has(native):
+    """400 A are wrong for sensors of 20 A and right for others; no drive has 20 000 A."""
+    known = core.parameters(native)
+    assert known["current_limit"].maximum == 100.0
+    wide = core.at_some_scale(known)
+    assert wide["current_limit"].maximum == 100.0 * 64 and wide["current_limit"].minimum == 0.5 / 64
+    assert wide["stator_resistance"].maximum == known["stator_resistance"].maximum * 4096
+    assert wide["speed_ramp"] == known["speed_ramp"]

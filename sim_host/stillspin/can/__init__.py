@@ -9,7 +9,7 @@ from importlib.resources import files
 import cantools.database
 from cantools.database.can import Database
 
-from stillspin.drive.table import POWERS
+from stillspin import scales as boards
 
 NODES = range(1, 32)
 _CRC_POLYNOMIAL = 0x1D
@@ -32,7 +32,7 @@ def database(node: int = 1) -> Database:
     return loaded
 
 
-def text_of(faults: Collection[int], node: int = 1, scales: tuple[int, int] = (0, 0)) -> str:
+def text_of(faults: Collection[int], node: int = 1, scales: boards.Pair = (0, 0)) -> str:
     """A DBC file of a node.
 
     Args:
@@ -48,8 +48,7 @@ def text_of(faults: Collection[int], node: int = 1, scales: tuple[int, int] = (0
     fault.choices = OrderedDict((code, name) for code, name in (fault.choices or {}).items() if code in faults)
     for message in loaded.messages:
         for signal in message.signals:
-            powers = POWERS.get(signal.unit or "", (0, 0))
-            signal.scale *= 2.0 ** (powers[0] * scales[0] + powers[1] * scales[1])
+            signal.scale *= 2.0 ** boards.exponent(signal.unit or "", scales)
     return str(loaded.as_dbc_string())
 
 

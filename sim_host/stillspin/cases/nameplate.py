@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from stillspin import core
+from stillspin import scales as boards
 from stillspin.entry import Entry
 
 
@@ -45,8 +46,8 @@ FOLLOWING = (
     Following("link_maximum", "link", "source_voltage", 1.4, needed=False),
 )
 _SCALES = (
-    (core.CURRENT_SCALE, "current_range", 20.0, 40.0),
-    (core.VOLTAGE_SCALE, "voltage_range", 225.0, 450.0),
+    (boards.CURRENT, "current_range", 20.0, 40.0),
+    (boards.VOLTAGE, "voltage_range", 225.0, 450.0),
 )
 """Parameters that follow from the board's range: at 0 it is within the two."""
 STATED = ("current_limit", "speed_limit")

@@ -17,8 +17,7 @@ from stillspin import core, json_schema, resources, toml_table
 from stillspin.cases import file_schema, flux_table, nameplate
 from stillspin.entry import Entry, Value
 from stillspin.errors import InputError, did_you_mean
-
-_SCALE_NAMES = (core.CURRENT_SCALE, core.VOLTAGE_SCALE)
+from stillspin.scales import SCALES
 
 
 @dataclass(frozen=True)
@@ -114,7 +113,7 @@ def _scales(motor: str, profile_name: str) -> dict[str, float]:
             "adc": {key: each for key, each in adc.items() if isinstance(each, int | float) and each > 0}
         }
         said = {**nameplate.scales(ranges), **stated} if kind == "motors" else stated
-        found |= {key: value for key in _SCALE_NAMES if isinstance(value := said.get(key), int | float)}
+        found |= {key: value for key in SCALES if isinstance(value := said.get(key), int | float)}
     return found
 
 
@@ -155,7 +154,7 @@ def split_assignment(word: str) -> tuple[str, str]:
 
 def _stated_scales(words: Iterable[str], known: Mapping[str, Entry]) -> dict[str, float]:
     pairs = [split_assignment(word) for word in words]
-    return {name: float(known[name].read(text, f"--set {name}")) for name, text in pairs if name in _SCALE_NAMES}
+    return {name: float(known[name].read(text, f"--set {name}")) for name, text in pairs if name in SCALES}
 
 
 def changes(

@@ -96,7 +96,7 @@ def read(path: Path) -> Scenario:
 
 def _schema() -> Json:
     native = core.load()
-    return file_schema.scenario(core.plant_schema(native), core.parameters(native))
+    return file_schema.scenario(core.plant_schema(native), core.at_some_scale(core.parameters(native)))
 
 
 def _schemes(data: Json, path: Path) -> dict[str, Json]:

@@ -14,6 +14,7 @@ import typer
 from cantools.database import Database
 from cantools.database.errors import Error as DatabaseError
 
+from stillspin import scales
 from stillspin.can import text_of
 from stillspin.commands import parameter_file
 from stillspin.commands.connection import opened
@@ -63,8 +64,8 @@ def bus(
         raise InputError(f"address '{where}': must be a CAN bus, such as can:slcan:/dev/ttyACM0")
     if export:
         with opened(where) as drive:
-            scales = round(drive.get("current_scale")), round(drive.get("voltage_scale"))
-            parameter_file.write(export, text_of(drive.has_faults(), wanted.options["node"], scales))
+            told = text_of(drive.has_faults(), wanted.options["node"], scales.of(drive.parameters()))
+            parameter_file.write(export, told)
             print(f"node {wanted.options['node']}, {drive.identity.text}; see {export}")
         return
     only = wanted.options["node"] if "node=" in where else None

@@ -47,5 +47,6 @@ def made(kind: str) -> str:
     native = core.load()
     entries = core.plant_schema(native)
     of_campaign = _OF_CAMPAIGNS.get(kind)
-    found = of_campaign(entries) if of_campaign else file_schema.schema(kind, entries, core.parameters(native))
+    known = core.at_some_scale(core.parameters(native))
+    found = of_campaign(entries) if of_campaign else file_schema.schema(kind, entries, known)
     return json.dumps(found, indent=2, ensure_ascii=False) + "\n"

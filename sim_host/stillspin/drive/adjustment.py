@@ -10,8 +10,8 @@ from stillspin.drive import values
 from stillspin.drive.describe import unpack
 from stillspin.drive.inspection import Inspection
 from stillspin.drive.protocol import Command, Request
-from stillspin.drive.table import SCALES
 from stillspin.drive.values import ConflictWarning
+from stillspin.scales import SCALES
 
 
 class Adjustment(Inspection):

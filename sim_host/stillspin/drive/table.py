@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from stillspin import core
+from stillspin import core, scales
 from stillspin.drive.protocol import StatusCode
 from stillspin.errors import InputError, StillspinError, did_you_mean
 from stillspin.link.errors import RefusedError
@@ -15,18 +15,6 @@ from stillspin.quantity import Range
 
 TURN = "turn"
 """Unit of the signals that are binary angles."""
-SCALES = ("current_scale", "voltage_scale")
-"""Parameters that say what an ampere and a volt of the drive's formats are."""
-POWERS = {
-    **dict.fromkeys(("A", "mA", "A/s"), (1, 0)),
-    **dict.fromkeys(("V", "Vs", "mVs"), (0, 1)),
-    **dict.fromkeys(("ohm", "mH"), (-1, 1)),
-    **dict.fromkeys(("Nm", "Nms", "kgm2"), (1, 1)),
-    "A2s2": (2, 0),
-    "%/A": (-1, 0),
-    "A/V": (1, -1),
-}
-"""By unit: how often it has that of a current and that of a voltage in it; as firmware/dictionary/unit_list.h."""
 KNOWN_ROTOR, KNOWN_FRAME, KNOWN_HEAT_SINK = 1, 2, 4
 """What a drive knows: the rotor's angle and speed; the currents in the frame that its control uses; its temperature."""
 KNOWN_ALL = KNOWN_ROTOR | KNOWN_FRAME | KNOWN_HEAT_SINK
@@ -101,11 +89,10 @@ class Parameter:
         """
         return self._raw(self.range.read(value, self.name))
 
-    def moved(self, steps: tuple[float, float]) -> Parameter:
+    def moved(self, steps: scales.Pair) -> Parameter:
         """The same in a drive whose scales are so much larger."""
-        power = POWERS.get(self.unit, (0, 0))
-        up = round(power[0] * steps[0] + power[1] * steps[1])
-        return replace(self, q=self.q - up, decimals=self.decimals + max(0, (9 - 3 * up) // 10 if up < 0 else 0))
+        up = scales.exponent(self.unit, steps)
+        return replace(self, q=self.q - up, decimals=scales.decimals(self.decimals, up))
 
 
 @dataclass(frozen=True)
@@ -191,10 +178,11 @@ class Table:
 
     def with_scales(self, now: Mapping[str, float], then: Mapping[str, float]) -> Table:
         """Formats and ranges of the parameters when the scales among the values `now` become those of `then`."""
-        current, voltage = (then.get(name, now.get(name, 0.0)) - now.get(name, 0.0) for name in SCALES)
-        if not current and not voltage:
+        before, behind = scales.of(now), scales.of({**now, **then})
+        if before == behind:
             return self
-        return replace(self, parameters=tuple(each.moved((current, voltage)) for each in self.parameters))
+        steps = behind[0] - before[0], behind[1] - before[1]
+        return replace(self, parameters=tuple(each.moved(steps) for each in self.parameters))
 
     def chosen(self, names: Iterable[str]) -> list[Signal]:
         """The signals of these names, in their order."""

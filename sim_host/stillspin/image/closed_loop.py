@@ -22,7 +22,7 @@ from stillspin.counted import counted
 from stillspin.drive import describe, values
 from stillspin.drive.protocol import CONTROL_PERIOD, STREAM_EVENT, Command, Request, Words
 from stillspin.drive.state import FAULT, READY, RUN, RawStatus
-from stillspin.drive.table import SCALES, Table
+from stillspin.drive.table import Table
 from stillspin.errors import StillspinError
 from stillspin.image import opened
 from stillspin.image.opened import Image
@@ -30,6 +30,7 @@ from stillspin.image.run_record import RASTER, Played, RunRecord
 from stillspin.image.serial_client import SerialClient
 from stillspin.link.errors import NoAnswerError, RefusedError
 from stillspin.link.records import Record
+from stillspin.scales import SCALES
 
 _BOOT = 500
 _READY = 50_000
