@@ -3,9 +3,9 @@
 // Machine (nameplate of motor A)
 PARAMETER(1, pole_pairs, NONE, 0, 0, 1, 30, 4, STOPPED, "pole pairs")
 PARAMETER(10, current_scale, NONE, 0, 0, -6, 6, 0, STOPPED,
-          "power of two of all ranges of currents, 0 for 20 to 40 A; set it first")
+          "power of two that scales all currents, 0 for sensors of 20 to 40 A; set it first")
 PARAMETER(11, voltage_scale, NONE, 0, 0, -6, 6, 0, STOPPED,
-          "power of two of all ranges of voltages, 0 for 225 to 450 V; set it first")
+          "power of two that scales all voltages, 0 for sensors of 225 to 450 V; set it first")
 PARAMETER(2, stator_resistance, OHM, 24, 4, 10, 200000, 3200, STOPPED, "stator resistance of a phase")
 PARAMETER(3, inductance_d, MH, 20, 3, 50, 200000, 4900, STOPPED, "d-axis inductance")
 PARAMETER(4, inductance_q, MH, 20, 3, 50, 200000, 7800, STOPPED, "q-axis inductance, at least that of the d-axis")
