@@ -110,12 +110,14 @@ def test_a_fault_that_the_drive_says_is_counted_apart_and_a_motor_that_it_refuse
     assert found["motors"]["A"]["plain"]["cases"] == 0
     assert found["motors"]["A"]["with_fault"]["cases"] == 1
     assert found["motors"]["A"]["with_fault"]["good"] == 0
-    # Without saliency the start's test says that it cannot tell the polarity.
-    words += ["--motors", "A,B-SPM", "--json", "c.jsonl"]
+    # Told to look for an axis that is not there, the start says that it cannot tell the polarity.
+    told = (resources.find("motors", "B-SPM")).read_text(encoding="utf-8") + "start_method = 0\n"
+    other = written(tmp_path, told, "SPM.toml")
+    words += ["--motors", f"A,{other}", "--json", "c.jsonl"]
     done = call(*words)
     found = json.loads((tmp_path / "r/metrics.json").read_text())
     assert done.exit_code == 1, done.output
-    assert (found["motors"]["A"]["plain"]["good"], found["motors"]["B-SPM"]["plain"]["refused"]) == (1, 1)
+    assert (found["motors"]["A"]["plain"]["good"], found["motors"][other]["plain"]["refused"]) == (1, 1)
     assert any("polarity" in reason for reason in found["refusals"])
     assert "all of them: 0 of 1 case failed" in done.stdout
     assert call(*words, "--resume", "--may-refuse", "50").exit_code == 0

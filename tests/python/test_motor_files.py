@@ -5,13 +5,15 @@ import re
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 from test_motors import PUMP
 from typer.testing import CliRunner
 
 from stillspin import cli, core, resources
-from stillspin.cases import motor_check, profile
+from stillspin.cases import motor_check, open_loop, profile
 from stillspin.cases.motor_told import Finding, Motor
+from stillspin.measure import metrics
 
 SALIENT = PUMP.replace("60.0", "300.0").replace("8.0", "20.0").replace("100.0", "450.0") + "speed_limit = 1500\n"
 """A motor that the drive runs."""
@@ -79,11 +81,80 @@ def test_a_ripple_that_the_formula_lets_pass_is_found_by_the_start(native, tmp_p
     assert not found["tried"].works and "over-current" in found["tried"].words
 
 
-def test_a_motor_without_saliency_does_not_start_at_rest(native):
+def test_a_motor_without_saliency_is_turned_by_a_vector(native):
     result = told("check", "B-SPM")
-    assert result.exit_code == 1
-    assert "WRONG  start at rest: Lq and Ld differ by 0.0%" in result.stdout
-    assert "start_method = 1" in result.stdout
+    assert result.exit_code == 0, result.stdout
+    assert "at rest the angle is not known, and no load is held there" in result.stdout
+    assert "works  tried: started" in result.stdout
+
+
+def test_without_a_vector_it_is_said_how_to_start_it(native, tmp_path):
+    found = findings(native, tmp_path, SALIENT.replace("14e-3", "11e-3") + "start_method = 0\n")
+    assert not found["start at rest"].works and "start_method = 1" in found["start at rest"].words
+    assert not found["tried"].works
+
+
+def test_a_vector_longer_than_can_be_damped_is_said(native, tmp_path):
+    text = SALIENT.replace("14e-3", "11e-3").replace("current_limit = 5.0", "current_limit = 12.0\nif_current = 11.0")
+    found = findings(native, tmp_path, text)
+    assert not found["start at rest"].works and "lower if_current below 10 A" in found["start at rest"].words
+
+
+def catalogue_motor(native, name):
+    schema, known = core.plant_schema(native), core.parameters(native)
+    return profile.load(name, schema, known, name)
+
+
+@pytest.mark.parametrize("name", ["gimbal_10v", "hub_36v", "fan_310v"])
+@pytest.mark.parametrize("angle", [0.3, -2.0])
+def test_a_surface_magnet_motor_starts_against_a_load_and_carries_it(native, name, angle):
+    """What follows from the nameplate, and a brake of a third of what the vector carries."""
+    chosen = catalogue_motor(native, name)
+    told = chosen.parameters
+    brake = 0.33 * 1.5 * told["pole_pairs"] * told["magnet_flux"] * told["if_current"]
+    wanted = 1.3 * told["if_speed"]
+    own = {"initial": {"angle": angle}, "mechanics": {"coulomb_friction": brake, "stiction": brake}}
+    result = native.run(
+        plant=profile.merged(chosen.plant, own),
+        parameters=told,
+        commands=[(0.0, "speed_ref_rpm", wanted)],
+        load=[],
+        duration=1.5,
+        max_start=8.0,
+        record_every=10,
+        waveform=(0.0, 0.0, 1),
+        seed=1,
+        progress=None,
+    )
+    assert result.completed and not result.faults, result.reason
+    signals = dict(result.signals)
+    late = np.asarray(signals["time"]) > 1.0
+    assert np.max(np.abs(metrics.position_error(signals)[late])) < 12.0
+    assert np.abs(np.mean(np.asarray(signals["true_speed"])[late]) - wanted) < 0.1 * wanted
+
+
+def test_the_vector_follows_from_the_nameplate():
+    """The share of the EMF, the damping's bound and the slope, each by hand."""
+    told = {
+        "inductance_d": 1.0,
+        "inductance_q": 1.05,
+        "magnet_flux": 0.02,
+        "pole_pairs": 5.0,
+        "inertia": 1e-3,
+        "current_limit": 20.0,
+        "rated_current": 15.0,
+        "speed_limit": 3000.0,
+    }
+    found = open_loop.following(told, 50.0)
+    assert found["start_method"] == 1.0
+    assert found["if_current"] == pytest.approx(0.5 * 0.02 / 1.05e-3, abs=0.01)
+    assert found["if_speed"] == pytest.approx(4.0 / 0.02 / 5.0 * 30.0 / np.pi, abs=1.0)
+    assert found["if_acceleration"] == pytest.approx(found["if_speed"] / 0.6, abs=1.0)
+    assert found["spin_speed"] == pytest.approx(3.0 * found["if_speed"], abs=2.0)
+    assert open_loop.following({**told, "inductance_q": 1.1}, 50.0) == {}
+    assert found["speed_ramp"] == pytest.approx(0.1 * 1.5 * 5.0 * 0.02 * 9.52 / 1e-3 * 30.0 / np.pi, abs=1.0)
+    heavy = open_loop.following({**told, "inertia": 0.03}, 50.0)
+    assert heavy["if_acceleration"] == heavy["speed_ramp"] == 45.0
 
 
 @pytest.mark.parametrize(

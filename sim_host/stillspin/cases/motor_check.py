@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from stillspin import core
 from stillspin.cases import motor_limits, motor_loops, motor_physics
 from stillspin.cases.motor_told import Described, Finding, Motor
-from stillspin.cases.profile import Profile
 from stillspin.counted import counted
 from stillspin.errors import InputError
 
@@ -32,7 +31,7 @@ def findings(motor: Motor, native: core.NativeCore) -> list[Finding]:
     """Everything that was looked at; where the drive takes the parameters a start is tried, too."""
     ranges = _ranges(motor)
     held = [rules(motor.profile.parameters, native)] if all(finding.works for finding in ranges) else []
-    start = [tried(motor.profile, motor.told("speed_limit"), native)] if held and held[0].works else []
+    start = [tried(motor, native)] if held and held[0].works else []
     return [*ranges, *held, *physics(motor), *start]
 
 
@@ -66,18 +65,24 @@ def rules(parameters: Mapping[str, float], native: core.NativeCore) -> Finding:
     return Finding("drive's rules", True, "the drive takes the parameters together")
 
 
-def tried(chosen: Profile, speed_limit: float, native: core.NativeCore) -> Finding:
-    """A start and a run-up of the virtual drive without load, to a tenth of `speed_limit`, rpm."""
-    target = round(0.1 * speed_limit)
+def _target(motor: Described) -> int:
+    """Speed to try, rpm: a tenth of the largest, and beyond the one to which a vector turns the shaft."""
+    turned = 1.5 * motor.told("if_speed") if motor.told("start_method") == 1.0 else 0.0
+    return round(max(0.1 * motor.told("speed_limit"), turned))
+
+
+def tried(motor: Motor, native: core.NativeCore) -> Finding:
+    """A start and a run-up of the virtual drive without load, to a tenth of `speed_limit` or what it starts with."""
+    target = _target(motor)
     title = "tried"
     try:
         result = native.run(
-            plant=chosen.plant,
-            parameters=dict(chosen.parameters),
-            commands=[(0.2, "speed_ref_rpm", float(target))],
+            plant=motor.profile.plant,
+            parameters=dict(motor.profile.parameters),
+            commands=[(0.0, "speed_ref_rpm", float(target))],
             load=[],
             duration=2.0,
-            max_start=5.0,
+            max_start=8.0,
             record_every=10,
             waveform=(0.0, 0.0, 1),
             seed=1,

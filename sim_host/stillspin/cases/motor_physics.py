@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import math
 
+from stillspin.cases import open_loop
 from stillspin.cases.motor_told import PERIOD, Described, Finding
 
 _TURN_LEAST = 12.0  # control interrupts per electrical turn
-_SALIENCY_LEAST = 0.02
 
 
 def saliency(motor: Described) -> Finding:
     """Whether the inductances differ enough to tell the position at rest, up to the limit of the current."""
     d, q = motor.plant("machine", "inductance_d"), motor.plant("machine", "inductance_q")
-    share = (q - d) / (q + d)
-    if share < _SALIENCY_LEAST:
+    share = open_loop.share(d, q)
+    if motor.told("start_method") == 1.0:
+        return _turned(motor, share)
+    if share < open_loop.SALIENCY_LEAST:
         words = f"Lq and Ld differ by {share:.1%} of their sum: no start from standstill by saliency"
         return Finding("start at rest", False, f"{words}; start_method = 1 turns the shaft by a current first")
     limit = motor.told("current_limit")
@@ -27,6 +29,23 @@ def saliency(motor: Described) -> Finding:
         words += f", and gone from {end:.3g} A on; current_limit is {limit:.3g} A"
         return Finding("start at rest", False, f"{words}: choose current_limit below {0.9 * end:.3g} A")
     return Finding("start at rest", True, f"{words}, and there up to {end:.3g} A; current_limit is {limit:.3g} A")
+
+
+def _turned(motor: Described, share: float) -> Finding:
+    """What a start by a current vector means for whoever uses the drive."""
+    current, speed = motor.told("if_current"), motor.told("if_speed")
+    carried = 1.5 * motor.plant("machine", "pole_pairs") * motor.plant("machine", "magnet_flux") * current
+    words = (
+        f"Lq and Ld differ by {share:.1%} of their sum: at rest the angle is not known, and no load is held there; "
+        f"{current:.3g} A turn the shaft, against up to {carried:.2g} N m, to {speed:.0f} rpm, where the EMF shows it: "
+        "command no less"
+    )
+    linked = motor.plant("machine", "magnet_flux") / motor.plant("machine", "inductance_q")
+    if current > linked:
+        return Finding(
+            "start at rest", False, f"{words}; the vector is not damped: lower if_current below {linked:.3g} A"
+        )
+    return Finding("start at rest", True, words)
 
 
 def ripple(motor: Described) -> Finding:
@@ -45,6 +64,8 @@ def ripple(motor: Described) -> Finding:
 
 def polarity(motor: Described) -> Finding:
     """Whether the link drives the test's current through the winding at all, and in what time."""
+    if motor.told("start_method") == 1.0:
+        return Finding("polarity", True, "the vector that turns the shaft has its polarity: it is not asked for")
     volts = motor.plant("link", "source_voltage") / math.sqrt(3.0)
     resistance, inductance = motor.plant("machine", "resistance"), motor.plant("machine", "inductance_d")
     wanted, possible = min(motor.told("start_current"), motor.told("current_limit")), volts / resistance

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from stillspin import core
 from stillspin import scales as boards
+from stillspin.cases import open_loop
 from stillspin.entry import Entry
 
 
@@ -77,7 +78,8 @@ def following(plant: core.Plant, stated: Mapping[str, float]) -> dict[str, float
         found["map_current"] = limit
     if limit is not None and "weakening_limit" not in stated:
         found["weakening_limit"] = round(0.8 * limit, 9)
-    return found
+    vector = open_loop.following({**found, **stated}, float(plant.get("link", {}).get("source_voltage", 0.0)))
+    return found | {name: value for name, value in vector.items() if name not in stated}
 
 
 def not_stated(plant: core.Plant, stated: Mapping[str, float], known: Mapping[str, Entry]) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from typing import Any
 
 from stillspin import core
 from stillspin.cases import motor_check, nameplate, profile, questions
-from stillspin.cases.motor_told import Finding
+from stillspin.cases.motor_told import Finding, Motor
 from stillspin.commands import parameter_file
 from stillspin.commands.params import transfer
 from stillspin.counted import counted
@@ -145,5 +145,6 @@ def of_the_virtual_drive(answers: questions.Answers, parameters: dict[str, float
     with tempfile.TemporaryDirectory() as directory:
         path = Path(directory) / "motor.toml"
         path.write_text(questions.file_text("motor", answers), encoding="utf-8")
-        chosen = profile.load("bench", core.plant_schema(native), known, str(path), checked=False)
-    return [held, motor_check.tried(chosen, answers["speed"], native)], ""
+        schema = core.plant_schema(native)
+        chosen = profile.load("bench", schema, known, str(path), checked=False)
+    return [held, motor_check.tried(Motor(chosen, schema, core.at_scale(known, chosen.parameters)), native)], ""

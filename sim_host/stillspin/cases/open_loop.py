@@ -1,0 +1,63 @@
+"""A machine whose inductances hardly differ: nothing shows its angle at rest, so a current vector turns it first.
+
+What the vector must be follows from the nameplate: long enough for the load, short enough for its damping, and up to a
+speed at which the back-EMF stands out of the link's noise.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+SALIENCY_LEAST = 0.04
+"""(Lq - Ld)/(Lq + Ld) below which a start does not look for the axis."""
+_EMF_SHARE = 0.08  # of the link's voltage, at the vector's last speed
+_FLUX_SHARE = 0.5  # L I of the vector, of the magnet's flux: beyond that it is hardly damped (control/if_start.h)
+_TORQUE_SHARE = 0.1  # of the vector's torque, for its own acceleration and that behind it
+_RISE_TIME = 0.6  # s, to the last speed
+_SPEEDS = (10.0, 6000.0)  # rpm, that the parameter takes
+_SPIN = (300.0, 20000.0)
+_RAMP_MOST = 3000.0  # rpm/s, the drive's default
+
+
+def share(inductance_d: float, inductance_q: float) -> float:
+    """What tells the axis of a shaft at rest."""
+    return (inductance_q - inductance_d) / (inductance_q + inductance_d)
+
+
+def following(told: Mapping[str, float], volts: float) -> dict[str, float]:
+    """The parameters of a start by a current vector, and of the spin behind it.
+
+    Args:
+        told: what the drive is told of machine and limits, in its own units.
+        volts: of the link.
+
+    Returns:
+        Nothing for a machine with saliency, or one that is told incompletely.
+    """
+    needed = ("inductance_d", "inductance_q", "magnet_flux", "pole_pairs", "current_limit", "speed_limit")
+    if any(not told.get(name) for name in needed) or share(told["inductance_d"], told["inductance_q"]) > SALIENCY_LEAST:
+        return {}
+    flux, pairs, limit = told["magnet_flux"], told["pole_pairs"], told["current_limit"]
+    rated = told.get("rated_current") or limit / 2.0
+    current = min(rated, limit, _FLUX_SHARE * flux / (told["inductance_q"] * 1e-3))
+    fastest = min(_SPEEDS[1], told["speed_limit"] / 3.0)
+    speed = min(max(_rpm(_EMF_SHARE * volts / flux / pairs), _SPEEDS[0]), fastest)
+    torque = 1.5 * pairs * flux * current
+    ramp = _RAMP_MOST
+    if told.get("inertia"):
+        ramp = min(ramp, _TORQUE_SHARE * _rpm(torque / told["inertia"]))
+    slope = min(speed / _RISE_TIME, ramp)
+    spin = min(max(3.0 * speed, _SPIN[0]), _SPIN[1])
+    return {
+        "start_method": 1.0,
+        "if_current": round(current, 2),
+        "if_speed": float(round(speed)),
+        "if_acceleration": float(max(round(slope), 10)),
+        "spin_speed": float(round(spin)),
+        "speed_ramp": float(max(round(ramp), 10)),
+    }
+
+
+def _rpm(speed: float) -> float:
+    return speed * 30.0 / math.pi
