@@ -1,6 +1,7 @@
 #include "estimators/inertia_match.h"
 
 #include "control/frame.h"
+#include "hal/qmath/qcall.h"
 
 #define ONE_Q24 16777216L
 #define QUIET_MS 20u
@@ -37,37 +38,37 @@ static void begin(inertia_match_t* s, const inertia_seen_t* in) {
 
 static void integrate(inertia_match_t* s, const inertia_seen_t* in, int32_t periods) {
   const int32_t way = q_shr(angle_diff_bam(in->angle_bam, s->angle_bam), 8);
-  s->turned = q_add_sat(s->turned, way - q_shr(s->speed0_bpp, 8) * periods);
-  s->expected = q_add_sat(s->expected, q_shr(s->last_gained_bpp / 2 + s->gained_bpp / 2, 8) * periods);
+  s->turned = qc_add_sat(s->turned, way - q_shr(s->speed0_bpp, 8) * periods);
+  s->expected = qc_add_sat(s->expected, q_shr(s->last_gained_bpp / 2 + s->gained_bpp / 2, 8) * periods);
   s->last_gained_bpp = s->gained_bpp;
 }
 
 // What was integrated becomes what the new ratio lets expect.
 static int32_t change(inertia_match_t* s, int32_t factor_q24) {
-  const int32_t next_q24 = q_clamp(q_mul_sat(s->ratio_q24, factor_q24, 24), LOWEST_Q24, HIGHEST_Q24);
+  const int32_t next_q24 = q_clamp(qc_mul_sat(s->ratio_q24, factor_q24, 24), LOWEST_Q24, HIGHEST_Q24);
   const int32_t given_q24 = q_clamp(q_div(next_q24, s->ratio_q24, 24), ONE_Q24 / 8, 8 * ONE_Q24);
   s->ratio_q24 = next_q24;
-  s->base_q8 = q_mul_sat(s->base_q8, given_q24, 24);
-  s->start_base_q8 = q_mul_sat(s->start_base_q8, given_q24, 24);
-  s->mean_q8 = q_mul_sat(s->mean_q8, given_q24, 24);
-  s->gained_bpp = q_mul_sat(s->gained_bpp, given_q24, 24);
+  s->base_q8 = qc_mul_sat(s->base_q8, given_q24, 24);
+  s->start_base_q8 = qc_mul_sat(s->start_base_q8, given_q24, 24);
+  s->mean_q8 = qc_mul_sat(s->mean_q8, given_q24, 24);
+  s->gained_bpp = qc_mul_sat(s->gained_bpp, given_q24, 24);
   s->last_gained_bpp = s->gained_bpp;
-  s->expected = q_mul_sat(s->expected, given_q24, 24);
+  s->expected = qc_mul_sat(s->expected, given_q24, 24);
   return given_q24;
 }
 
 static int32_t judge(inertia_match_t* s, const inertia_seen_t* in, int32_t periods) {
-  s->mean_q8 = q_shl_sat(s->gained_bpp / ((int32_t)s->ms * periods), 8);
-  if (q_abs_sat(s->turned) < s->next || (s->turned < 0) != (s->expected < 0)) return ONE_Q24;
+  s->mean_q8 = qc_shl_sat(s->gained_bpp / ((int32_t)s->ms * periods), 8);
+  if (qc_abs_sat(s->turned) < s->next || (s->turned < 0) != (s->expected < 0)) return ONE_Q24;
   s->next *= 4;
-  if (q_abs_sat(s->mean_q8) < in->least_accel_q8) return ONE_Q24;
-  const int32_t factor_q24 = q_div(q_abs_sat(s->turned), q_max(q_abs_sat(s->expected), 1), 24);
-  return (q_abs_sat(factor_q24 - ONE_Q24) > ONE_Q24 / 16) ? change(s, factor_q24) : ONE_Q24;
+  if (qc_abs_sat(s->mean_q8) < in->least_accel_q8) return ONE_Q24;
+  const int32_t factor_q24 = q_div(qc_abs_sat(s->turned), q_max(qc_abs_sat(s->expected), 1), 24);
+  return (qc_abs_sat(factor_q24 - ONE_Q24) > ONE_Q24 / 16) ? change(s, factor_q24) : ONE_Q24;
 }
 
 static int32_t run_up(inertia_match_t* s, const inertia_seen_t* in, int32_t periods) {
   integrate(s, in, periods);
-  const bool far = q_abs_sat(s->turned) > TURN_END || q_abs_sat(s->expected) > TURN_END || s->next > LAST_TURN;
+  const bool far = qc_abs_sat(s->turned) > TURN_END || qc_abs_sat(s->expected) > TURN_END || s->next > LAST_TURN;
   if (s->quiet_ms > 0u || far || s->ms > RUN_UP_MS) {
     enter(s, INERTIA_SETTLE);
     return ONE_Q24;
@@ -80,7 +81,7 @@ static int32_t settle(inertia_match_t* s) {
   if (s->ms < SETTLE_MS || s->quiet_ms < SETTLE_MS) return ONE_Q24;
   enter(s, INERTIA_REST);
   if (s->ratio_q24 == s->before_q24) return ONE_Q24;
-  const bool same = q_abs_sat(q_sub_sat(s->base_q8, s->start_base_q8)) <= q_abs_sat(s->mean_q8) / 4;
+  const bool same = qc_abs_sat(qc_sub_sat(s->base_q8, s->start_base_q8)) <= qc_abs_sat(s->mean_q8) / 4;
   return same ? ONE_Q24 : change(s, q_div(s->before_q24, s->ratio_q24, 24));
 }
 

@@ -20,7 +20,7 @@ static const int16_t segment_sign[SATURATION_SEGMENTS] = {1, -1, -1, 1};
 // Change of an inverse inductance from -I to +I: -2 I slope y.
 static int32_t expected_change(int32_t y_q30, int32_t slope_q30, int32_t current_q20) {
   const int32_t relative_q30 = q_clamp(qc_mul_sat(slope_q30, 2 * current_q20, 20), -RELATIVE_MAX_Q30, RELATIVE_MAX_Q30);
-  return -q_mul(y_q30, relative_q30, 30);
+  return -qc_mul(y_q30, relative_q30, 30);
 }
 
 static dq_t expected(const machine_model_t* m, const saturation_slopes_t* slopes, int32_t current_q20) {

@@ -115,7 +115,7 @@ def key(name: str) -> int:
     """By which a name is looked up: packed_find()."""
     found = 0
     for letter in name.lower():
-        found = (31 * found + ord(letter)) & 0xFFFF
+        found = (31 * found + ord(letter)) & 0xFF
     return found
 
 
@@ -147,14 +147,17 @@ def pack(strings: list[str], names: int = 0) -> str:
     dictionary, words = blocks([spelled(word) for word in of_entries.symbols], 0)
     starts, more = blocks(["".join(map(bits, [*text, word_code.END])) for text in said], len(words))
     words += more
-    octets = [ord(letter or "\0") for letter in of_letters.symbols]
+
+    def pairs(octets: list[int]) -> list[int]:
+        return [low | high << 8 for low, high in zip_longest(octets[::2], octets[1::2], fillvalue=0)]
+
     tables = {
         "packed_starts": starts,
         "packed_dictionary": dictionary,
         "packed_entry_counts": of_entries.counts,
         "packed_letter_counts": of_letters.counts,
-        "packed_letters": [low | high << 8 for low, high in zip_longest(octets[::2], octets[1::2], fillvalue=0)],
-        "packed_keys": [key(name) for name in strings[len(strings) - names :]],
+        "packed_letters": pairs([ord(letter or "\0") for letter in of_letters.symbols]),
+        "packed_keys": pairs([key(name) for name in strings[len(strings) - names :]]),
         "packed_bits": [*words, 0],  # a code is looked for in two words
     }
     plain = sum(len(string) + 1 for string in strings)

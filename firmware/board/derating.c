@@ -11,6 +11,7 @@
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_board.h"
+#include "hal/qmath/qcall.h"
 
 #define TURN 8u           // ms between two looks
 #define SLOW_SETTLES 3u   // ms from the choice of the converter's input to its code
@@ -32,7 +33,7 @@ static int32_t celsius_q8(int32_t code) {
 static int32_t share_between(int32_t value, int32_t from, int32_t to, int32_t end_q15) {
   if (value <= from) return INTERLOCK_SHARE_ONE;
   if (value >= to) return end_q15;
-  return INTERLOCK_SHARE_ONE - q_mul(q_div(value - from, to - from, 15), INTERLOCK_SHARE_ONE - end_q15, 15);
+  return INTERLOCK_SHARE_ONE - qc_mul(q_div(value - from, to - from, 15), INTERLOCK_SHARE_ONE - end_q15, 15);
 }
 
 static drive_fault_t follow_heat_sink(int32_t* share_q15) {

@@ -21,7 +21,7 @@
 // How fast the shaft turns against the reference; 0 where it does not.
 static int32_t back_bpp(const drive_t* d) {
   const int32_t speed_bpp = d->position.selected.speed_bpp;
-  return q_max((d->control.ramp.value > 0) ? q_neg_sat(speed_bpp) : speed_bpp, 0);
+  return q_max((d->control.ramp.value > 0) ? qc_sub_sat(0, speed_bpp) : speed_bpp, 0);
 }
 
 static void begin_anew(const drive_t* d) {
@@ -50,7 +50,7 @@ static int32_t least_way_bam(const drive_t* d) {
 // The way in the direction of the reference; one that is pushed back counts from where it has been pushed to.
 static int32_t way_bam(const drive_t* d) {
   const int32_t forth = angle_diff_bam(d->position.selected.angle_bam, board.stall_from_bam);
-  const int32_t way = (d->control.ramp.value > 0) ? forth : q_neg_sat(forth);
+  const int32_t way = (d->control.ramp.value > 0) ? forth : qc_sub_sat(0, forth);
   if (way < 0) board.stall_from_bam = d->position.selected.angle_bam;
   return way;
 }

@@ -38,13 +38,34 @@ static commissioning_verdict_t agree(int32_t a, int32_t b, int32_t parts) {
 #error "a report has no room for its results"
 #endif
 
+// Places in the report of what others rest on: the functions below offer in this order.
+enum { AT_RESISTANCE = 0, AT_SENSORS = 5 };
+
+// What has been refused stays so for the first reason.
+static void conclude(commissioning_result_t* out, int32_t value, commissioning_verdict_t verdict) {
+  const bool allowed = parameter_allows(parameter_by_id(out->id), value);
+  out->value = value;
+  out->verdict = worst(out->verdict, worst(verdict, allowed ? VERDICT_USED : VERDICT_RANGE));
+}
+
 static void offer(commissioning_report_t* r, uint16_t id, int32_t value, commissioning_verdict_t verdict) {
-  const parameter_info_t* const info = parameter_by_id(id);
   commissioning_result_t* const out = &r->list[r->count++];
   out->id = id;
   out->before = parameter_get(id);
-  out->value = value;
-  out->verdict = worst(verdict, parameter_allows(info, value) ? VERDICT_USED : VERDICT_RANGE);
+  out->verdict = VERDICT_USED;
+  conclude(out, value, verdict);
+}
+
+// Whether all from one place of the report on are in use.
+static bool all_used(const commissioning_report_t* r, uint16_t first) {
+  for (uint16_t k = first; k < r->count; k++) {
+    if (r->list[k].verdict != VERDICT_USED) return false;
+  }
+  return true;
+}
+
+static void refuse_all(commissioning_report_t* r, uint16_t first) {
+  for (uint16_t k = first; k < r->count; k++) r->list[k].verdict = worst(r->list[k].verdict, VERDICT_DEPENDS);
 }
 
 static commissioning_verdict_t judge_staircase(const staircase_values_t* v, commissioning_report_t* r) {
@@ -99,12 +120,8 @@ static void judge_level(const map_values_t* v, const map_values_t* zero, uint16_
 
 // The levels are shares of the map's last current: with another one than before, all of them or none.
 static void keep_map_together(commissioning_report_t* r, uint16_t first) {
-  bool complete = true;
-  for (uint16_t k = first; k < r->count; k++) complete = complete && r->list[k].verdict == VERDICT_USED;
-  const bool rescaled = r->list[first].value != r->list[first].before;
-  for (uint16_t k = first; k < r->count && rescaled && !complete; k++) {
-    r->list[k].verdict = worst(r->list[k].verdict, VERDICT_DEPENDS);
-  }
+  const bool complete = all_used(r, first);
+  if (!complete && r->list[first].value != r->list[first].before) refuse_all(r, first);
   offer(r, ID_map_known, 1, complete ? VERDICT_USED : VERDICT_DEPENDS);
 }
 
@@ -112,21 +129,19 @@ static void judge_map(const commissioning_t* c, const map_values_t* zero, commis
                       commissioning_report_t* r) {
   const uint16_t first = r->count;
   offer(r, ID_map_current, parameters.current_limit, VERDICT_USED);
-  map_values_t level[MAP_LEVELS];
   int32_t ldq_q20[MAP_LEVELS];
   map_values_t below = *zero;
   for (uint16_t k = 0; k < MAP_LEVELS; k++) {
-    level[k] = map_solve(c->map.group[k], &c->model);
-    const map_values_t measured = level[k];
-    map_refer(&level[k], &below, level_q20(k));
-    ldq_q20[k] = level[k].ldq_q20;
+    const map_values_t measured = map_solve(c->map.group[k], &c->model);
+    map_values_t v = measured;
+    map_refer(&v, &below, level_q20(k));
+    judge_level(&v, zero, k, unsaturated, r);
+    ldq_q20[k] = v.ldq_q20;
     below = measured;
   }
   const bool smooth = map_smooth(ldq_q20, qc_sub_sat(zero->lqq_q20, zero->ldd_q20));
   for (uint16_t k = 0; k < MAP_LEVELS; k++) {
-    level[k].ldq_q20 = ldq_q20[k];
-    judge_level(&level[k], zero, k, unsaturated, r);
-    if (!smooth) r->list[r->count - 1u].verdict = worst(r->list[r->count - 1u].verdict, VERDICT_SPREAD);
+    conclude(&r->list[first + 3u * (k + 1u)], ldq_q20[k], smooth ? VERDICT_USED : VERDICT_SPREAD);
   }
   keep_map_together(r, first);
 }
@@ -143,15 +158,15 @@ void commissioning_solve_motion(commissioning_t* c) {
 }
 
 // Flux over inertia, from how far the torque trains moved the shaft, is a second way to the inertia.
-static int32_t inertia_from_trains(const commissioning_t* c, const spin_values_t* v) {
+static int32_t inertia_from_trains(const commissioning_t* c, int32_t inertia_q24) {
   const map_values_t top = map_solve(c->map.group[MAP_LEVELS - 1u], &c->model);
   const int32_t moved_q24 = q_max(qc_add_sat(16777216L, top.share_q24), 1);
-  return q_div(v->inertia_up_q24 / 2 + v->inertia_down_q24 / 2, moved_q24, 24);
+  return q_div(inertia_q24, moved_q24, 24);
 }
 
 static void judge_spin(const commissioning_t* c, commissioning_verdict_t resistance, commissioning_report_t* r) {
   const parameters_t* const p = &parameters;
-  const int32_t winding = (resistance == VERDICT_USED) ? r->list[0].value : p->stator_resistance;
+  const int32_t winding = (resistance == VERDICT_USED) ? r->list[AT_RESISTANCE].value : p->stator_resistance;
   const int32_t resistance_q24 = qc_add_sat(winding, p->device_resistance);
   const spin_values_t v = spin_solve(&c->spin, resistance_q24, c->model.ld_q30, c->model.pole_pairs);
   const commissioning_verdict_t measured = v.valid ? VERDICT_USED : VERDICT_NOT_MEASURED;
@@ -160,21 +175,11 @@ static void judge_spin(const commissioning_t* c, commissioning_verdict_t resista
   offer(r, ID_magnet_flux, v.flux_q28, flux);
   const int32_t inertia_q24 = v.inertia_up_q24 / 2 + v.inertia_down_q24 / 2;
   commissioning_verdict_t inertia = worst(measured, agree(v.inertia_up_q24, v.inertia_down_q24, 5));
-  inertia = worst(inertia, agree(inertia_q24, inertia_from_trains(c, &v), 4));
+  inertia = worst(inertia, agree(inertia_q24, inertia_from_trains(c, inertia_q24), 4));
   inertia = worst(inertia, (inertia_q24 <= 0) ? VERDICT_NOT_PHYSICAL : near(inertia_q24, p->inertia, 20));
   inertia = worst(inertia, (flux == VERDICT_USED) ? flux : VERDICT_DEPENDS);
   offer(r, ID_inertia, inertia_q24, inertia);
   offer(r, ID_friction, v.friction_q24, worst(inertia, (v.friction_q24 < 0) ? VERDICT_NOT_PHYSICAL : VERDICT_USED));
-}
-
-// Currents that are measured wrong spoil everything.
-static void judge_sensors(commissioning_report_t* r) {
-  commissioning_verdict_t sensors = VERDICT_USED;
-  for (uint16_t k = 0; k < r->count; k++) {
-    if (r->list[k].id == ID_sensor_mismatch) sensors = r->list[k].verdict;
-  }
-  if (sensors == VERDICT_USED) return;
-  for (uint16_t k = 0; k < r->count; k++) r->list[k].verdict = worst(r->list[k].verdict, VERDICT_DEPENDS);
 }
 
 void commissioning_judge(const commissioning_t* c, commissioning_report_t* report) {
@@ -187,25 +192,18 @@ void commissioning_judge(const commissioning_t* c, commissioning_report_t* repor
   const commissioning_verdict_t unsaturated = judge_unsaturated(&zero, mismatch_q30, report);
   judge_map(c, &zero, unsaturated, report);
   judge_spin(c, resistance, report);
-  judge_sensors(report);
+  // Currents that are measured wrong spoil everything.
+  if (report->list[AT_SENSORS].verdict != VERDICT_USED) refuse_all(report, 0);
 }
 
 // Values that pass one by one may still not fit together; then none of them is used.
-static void write(commissioning_report_t* r) {
+commissioning_outcome_t commissioning_use(commissioning_report_t* r) {
   for (uint16_t k = 0; k < r->count; k++) {
     if (r->list[k].verdict == VERDICT_USED) (void)parameter_set(r->list[k].id, r->list[k].value);
   }
-  if (parameter_conflict() == PACKED_NONE) return;
-  for (uint16_t k = 0; k < r->count; k++) {
-    (void)parameter_set(r->list[k].id, r->list[k].before);
-    r->list[k].verdict = worst(r->list[k].verdict, VERDICT_DEPENDS);
+  if (parameter_conflict() != PACKED_NONE) {
+    for (uint16_t k = 0; k < r->count; k++) (void)parameter_set(r->list[k].id, r->list[k].before);
+    refuse_all(r, 0);
   }
-}
-
-commissioning_outcome_t commissioning_use(commissioning_report_t* report) {
-  write(report);
-  for (uint16_t k = 0; k < report->count; k++) {
-    if (report->list[k].verdict != VERDICT_USED) return COMMISSIONING_PARTLY;
-  }
-  return COMMISSIONING_DONE;
+  return all_used(r, 0) ? COMMISSIONING_DONE : COMMISSIONING_PARTLY;
 }

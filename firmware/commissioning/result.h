@@ -18,7 +18,7 @@ void commissioning_judge(const commissioning_t* c, commissioning_report_t* repor
 
 /// Writes what is believed into the parameters (gates off, background level) and says what became of each. By itself,
 /// because both need much of the stack.
-commissioning_outcome_t commissioning_use(commissioning_report_t* report);
+commissioning_outcome_t commissioning_use(commissioning_report_t* r);
 
 /// After the spin: what the torque trains of the map need for the shaft's motion. Keeps the model's own values where
 /// the spin's are not plausible.

@@ -2,8 +2,6 @@
 
 #include "firmware/config/config.h"
 
-#include <stddef.h>
-
 #include "estimators/deviation.h"
 #include "firmware/base/clear.h"
 #include "firmware/dictionary/parameters.h"
@@ -22,7 +20,7 @@
 #define MILLIHENRY_Q30 1099511628L   // mH (Q20) to H (Q30): 1.024
 
 // Ticks of 10 ns from a time in us, Q16.
-static int16_t ticks(int32_t time_q16) { return (int16_t)q_shr_round(time_q16 * 100, 16); }
+static int16_t ticks(int32_t time_q16) { return (int16_t)qc_mul(time_q16, 100, 16); }
 
 // bandwidth (rad/s, Q8) * T, Q30.
 static int32_t bandwidth_step_q30(int32_t bandwidth_q8) { return qc_mul(bandwidth_q8, CONFIG_PER_PERIOD_Q20, 20); }
@@ -33,15 +31,15 @@ static int32_t share_of(int32_t inductance_q30, int32_t percent_q16) {
 }
 
 static bool load_map(machine_model_t* m) {
-  const parameters_t* const p = &parameters;
-  const int32_t ldd_q16[] = {p->ldd_1, p->ldd_2, p->ldd_3, p->ldd_4};  // percent
-  const int32_t lqq_q16[] = {p->lqq_1, p->lqq_2, p->lqq_3, p->lqq_4};
-  const int32_t ldq_q20[] = {p->ldq_1, p->ldq_2, p->ldq_3, p->ldq_4};  // mH
-  machine_map_parameters_t map = {p->map_current, {m->ld_q30}, {m->lq_q30}, {0}};
+  machine_map_parameters_t map;
+  map.current_q20 = parameters.map_current;
+  map.ldd_q30[0] = m->ld_q30;
+  map.lqq_q30[0] = m->lq_q30;
+  map.ldq_q30[0] = 0;
   for (uint16_t k = 0; k < MACHINE_MAP_SEGMENTS; k++) {
-    map.ldd_q30[k + 1u] = share_of(m->ld_q30, ldd_q16[k]);
-    map.lqq_q30[k + 1u] = share_of(m->lq_q30, lqq_q16[k]);
-    map.ldq_q30[k + 1u] = qc_mul(ldq_q20[k], MILLIHENRY_Q30, 30);
+    map.ldd_q30[k + 1u] = share_of(m->ld_q30, parameter_at(PARAMETER_PLACE(ldd_1) + k));
+    map.lqq_q30[k + 1u] = share_of(m->lq_q30, parameter_at(PARAMETER_PLACE(lqq_1) + k));
+    map.ldq_q30[k + 1u] = qc_mul(parameter_at(PARAMETER_PLACE(ldq_1) + k), MILLIHENRY_Q30, 30);  // of mH
   }
   return machine_model_saturate(m, &map);
 }
@@ -55,9 +53,9 @@ static bool damping_fits(const machine_model_t* m, int32_t k_q24) {
 // What the estimators make of a point of the map fits their formats: of h (machine_model.h) with the largest current
 // that two sensors show together, twice their full scale.
 static bool point_fits(const machine_model_t* m) {
-  const int32_t k0_q20 = q_max(q_abs_sat(m->k0_q20.d), q_abs_sat(m->k0_q20.q));
-  const int32_t either_q24 = q_max(q_abs_sat(m->k_dq_q24), q_abs_sat(m->k_qd_q24));
-  const int32_t k_q24 = qc_add_sat(either_q24, 2 * q_abs_sat(m->k_dd_q24));
+  const int32_t k0_q20 = q_max(qc_abs_sat(m->k0_q20.d), qc_abs_sat(m->k0_q20.q));
+  const int32_t either_q24 = q_max(qc_abs_sat(m->k_dq_q24), qc_abs_sat(m->k_qd_q24));
+  const int32_t k_q24 = qc_add_sat(either_q24, 2 * qc_abs_sat(m->k_dd_q24));
   const int32_t h_speed_q20 = qc_add_sat(qc_mul_sat(k_q24, parameters.current_full_scale, 23), k0_q20);
   return k0_q20 <= K0_MAX_Q20 && h_speed_q20 < INT32_MAX && damping_fits(m, either_q24);
 }
@@ -204,12 +202,11 @@ static bool load_position(drive_config_t* c) {
 
 // Parameters as they are, by their places in the table.
 static void load_values(config_values_t* v) {
-#define PLACE(name) (uint16_t)(offsetof(parameters_t, name) / sizeof(int32_t)),
+#define PLACE(name) PARAMETER_PLACE(name),
   static const uint16_t places[] = {CONFIG_VALUES(PLACE)};
 #undef PLACE
-  const int32_t* const from = (const int32_t*)(const void*)&parameters;
   int32_t* const to = (int32_t*)(void*)v;
-  for (uint16_t k = 0; k < sizeof places / sizeof places[0]; k++) to[k] = from[places[k]];
+  for (uint16_t k = 0; k < sizeof places / sizeof places[0]; k++) to[k] = parameter_at(places[k]);
 }
 
 static bool load_parts(drive_config_t* c) {

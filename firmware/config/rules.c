@@ -23,10 +23,9 @@ static int32_t largest_emf_q16(const parameters_t* p) {
 
 // Lqq below Ldd at one of the map's points.
 static bool map_is_crossed(const parameters_t* p) {
-  const int32_t lqq[] = {p->lqq_1, p->lqq_2, p->lqq_3, p->lqq_4};
-  const int32_t ldd[] = {p->ldd_1, p->ldd_2, p->ldd_3, p->ldd_4};
   for (uint16_t k = 0; k < 4u; k++) {
-    if ((int64_t)lqq[k] * p->inductance_q < (int64_t)ldd[k] * p->inductance_d) return true;
+    const int64_t lqq = q_product(parameter_at(PARAMETER_PLACE(lqq_1) + k), p->inductance_q);
+    if (lqq < q_product(parameter_at(PARAMETER_PLACE(ldd_1) + k), p->inductance_d)) return true;
   }
   return false;
 }

@@ -15,9 +15,7 @@
 static void put_fault(octet_writer_t* w, const fault_record_t* f) {
   put_unsigned(w, f->time_ms / 1000u);
   put_u8(w, '.');
-  put_unsigned(w, f->time_ms / 100u % 10u);
-  put_unsigned(w, f->time_ms / 10u % 10u);
-  put_unsigned(w, f->time_ms % 10u);
+  put_digits(w, f->time_ms % 1000u, 3);
   put_packed(w, SAY_s);
   put_message(w, CATALOGUE_FAULT, (uint16_t)f->fault);
   put_packed(w, SAY_comma);

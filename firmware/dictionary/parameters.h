@@ -4,6 +4,7 @@
 #define STILLSPIN_FIRMWARE_DICTIONARY_PARAMETERS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "firmware/text/packed_text.h"
@@ -20,6 +21,10 @@ typedef struct {
 #undef PARAMETER
 
 extern parameters_t parameters;
+
+/// The struct is an array with names: what stands side by side in the list is read in a loop.
+#define PARAMETER_PLACE(name) ((uint16_t)(offsetof(parameters_t, name) / sizeof(int32_t)))
+static inline int32_t parameter_at(uint16_t place) { return ((const int32_t*)(const void*)&parameters)[place]; }
 
 /// Values of the parameter position_source.
 enum {

@@ -49,7 +49,7 @@ void hold_end(void) { brake_release_hold.left = 0; }
 static int32_t restoring_accel_q8(const drive_t* d) {
   const estimator_output_t* const now = &d->position.selected;
   const int32_t behind = angle_diff_bam(brake_release_hold.reference_bam, now->angle_bam);
-  const int32_t slow = q_sub_sat(d->control.ramp.value, now->speed_bpp);
+  const int32_t slow = qc_sub_sat(d->control.ramp.value, now->speed_bpp);
   return q_sat64(q_shr64(q_mac(q_product(behind, CONTROL_SQUARE_Q30), slow, 2 * CONTROL_STEP_Q30), 22));
 }
 
@@ -61,7 +61,7 @@ bool hold_step(drive_t* d) {
   drive_control_t* const c = &d->control;
   const int64_t load_q40 = q_product(d->position.selected.load_accel_q8, h->current_per_accel);
   const int32_t above_q20 = q_sat64(c->reference_q20.q - q_shr64(load_q40, 20));
-  const int32_t return_q20 = q_mul_sat(q_mul_sat(above_q20, q_abs_sat(above_q20), 20), RETURN_Q30, 30);
+  const int32_t return_q20 = qc_mul_sat(qc_mul_sat(above_q20, qc_abs_sat(above_q20), 20), RETURN_Q30, 30);
   const int64_t command_q40 = q_mac(load_q40, restoring_accel_q8(d), h->current_per_accel);
   const int32_t current_q20 = q_sat64(q_shr64(command_q40, 20) - return_q20);
   const int32_t limited_q20 = q_clamp(current_q20, -c->headroom_q20, c->headroom_q20);

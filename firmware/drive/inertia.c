@@ -3,6 +3,7 @@
 #include "firmware/drive/inertia.h"
 
 #include "firmware/drive/position.h"
+#include "hal/qmath/qcall.h"
 
 #define STILL_RPM_Q16 1310720L  // 20 rpm
 
@@ -26,9 +27,9 @@ static void hand_on(drive_t* d, int32_t factor_q24) {
   speed_controller_scale(&d->control.speed, s->ratio_q24);
   if (s->phase == INERTIA_RUN_UP) {
     d->position.observer.load_accel_q8 = s->start_base_q8;
-    d->position.observer.speed_bpp = q_limit(q_add_sat(s->speed0_bpp, s->gained_bpp), MACHINE_SPEED_END_BPP);
+    d->position.observer.speed_bpp = q_limit(qc_add_sat(s->speed0_bpp, s->gained_bpp), MACHINE_SPEED_END_BPP);
   } else {
-    d->position.observer.load_accel_q8 = q_mul_sat(d->position.observer.load_accel_q8, factor_q24, 24);
+    d->position.observer.load_accel_q8 = qc_mul_sat(d->position.observer.load_accel_q8, factor_q24, 24);
   }
 }
 

@@ -20,7 +20,7 @@
 // shaft, and with the EMF below the link it ends.
 static bool current_flows(drive_t* d) {
   const int32_t off_q8 =
-      q_abs_sat(d->samples.raw_a_q8 - d->zero_current_a_q8) + q_abs_sat(d->samples.raw_b_q8 - d->zero_current_b_q8);
+      qc_abs_sat(d->samples.raw_a_q8 - d->zero_current_a_q8) + qc_abs_sat(d->samples.raw_b_q8 - d->zero_current_b_q8);
   d->offset_residual_q8 = q_follow_near(d->offset_residual_q8, off_q8, 5);
   return d->offset_residual_q8 > OFFSET_RESIDUAL_MAX_Q8;
 }
@@ -40,8 +40,8 @@ static void calibrate(drive_t* d) {
   if (flows) d->settled_at = d->periods + CALIBRATE_PERIODS;
   const bool settled = d->periods >= d->settled_at;
   if (d->periods < CALIBRATE_PERIODS || (!settled && d->periods < SETTLE_TIMEOUT)) return;
-  const bool plausible = q_abs_sat(d->zero_current_a_q8 - DRIVE_MIDDLE_Q8) < OFFSET_MAX_Q8 &&
-                         q_abs_sat(d->zero_current_b_q8 - DRIVE_MIDDLE_Q8) < OFFSET_MAX_Q8;
+  const bool plausible = qc_abs_sat(d->zero_current_a_q8 - DRIVE_MIDDLE_Q8) < OFFSET_MAX_Q8 &&
+                         qc_abs_sat(d->zero_current_b_q8 - DRIVE_MIDDLE_Q8) < OFFSET_MAX_Q8;
   if (plausible && settled) {
     drive_enter(d, DRIVE_READY);
   } else {
@@ -65,10 +65,10 @@ static void coast(drive_t* d) {
 
 static void stop(drive_t* d) {
   drive_supervision_t* const v = &d->supervision;
-  const int32_t still = q_mul(2L * 65536L, d->config.bpp_per_rpm_q8, 24);
+  const int32_t still = qc_mul(2L * 65536L, d->config.bpp_per_rpm_q8, 24);
   if (d->control.ramp.value != 0) return;
   v->stopping_periods++;
-  if (q_abs_sat(d->position.selected.speed_bpp) <= still) {
+  if (qc_abs_sat(d->position.selected.speed_bpp) <= still) {
     coast(d);
   } else if (v->stopping_periods > (uint32_t)d->config.values.stop_time * DRIVE_PERIODS_PER_MS) {
     drive_trip(d, FAULT_STOP);

@@ -40,10 +40,12 @@ packed_reader_t packed_reader(packed_text_t text) {
   return r;
 }
 
+// Of two in a word.
+static uint16_t octet_at(const uint16_t* words, uint16_t k) { return (words[k / 2u] >> 8u * (k % 2u)) & 0xFFu; }
+
 // 0 at the end of a word.
 static uint16_t next_letter(packed_reader_t* r) {
-  const uint16_t letter = next_code((r->word_is == OF_TEXT) ? &r->text : &r->word, packed_letter_counts);
-  return (packed_letters[letter / 2u] >> 8u * (letter % 2u)) & 0xFFu;
+  return octet_at(packed_letters, next_code((r->word_is == OF_TEXT) ? &r->text : &r->word, packed_letter_counts));
 }
 
 // The next word's first letter, 0 at the end.
@@ -110,12 +112,14 @@ bool packed_equals(packed_text_t text, const uint16_t* wanted, uint16_t count) {
 }
 
 uint16_t packed_find(packed_text_t first, uint16_t texts, const uint16_t* wanted, uint16_t count) {
-  const uint16_t* const keys = &packed_keys[first - (uint16_t)PACKED_FIRST_NAME];
+  const uint16_t place = (uint16_t)(first - (uint16_t)PACKED_FIRST_NAME);
   uint16_t key = 0;
-  for (uint16_t k = 0; k < count; k++) key = (uint16_t)(31u * key + text_small(wanted[k]));
-  uint16_t at = 0;
-  while (at < texts && (keys[at] != key || !packed_equals((packed_text_t)(first + at), wanted, count))) at++;
-  return at;
+  for (uint16_t k = 0; k < count; k++) key = (31u * key + text_small(wanted[k])) & 0xFFu;
+  for (uint16_t at = 0; at < texts; at++) {
+    if (octet_at(packed_keys, (uint16_t)(place + at)) != key) continue;
+    if (packed_equals((packed_text_t)(first + at), wanted, count)) return at;
+  }
+  return texts;
 }
 
 // Whether the text goes on with these characters.

@@ -54,7 +54,7 @@ bool packed_is(packed_text_t text, const char* string);
 bool packed_equals(packed_text_t text, const uint16_t* wanted, uint16_t count);
 
 /// Which of so many names, from `first` on, it is: these characters and no more, and capitals count as small letters;
-/// `texts` when it is none. A name is found by its key, without reading the others.
+/// `texts` when it is none. A name is found by its key, almost without reading others.
 uint16_t packed_find(packed_text_t first, uint16_t texts, const uint16_t* wanted, uint16_t count);
 
 /// True when these characters occur in the text; capitals count as small letters.
@@ -62,13 +62,13 @@ bool packed_occurs(packed_text_t text, const uint16_t* wanted, uint16_t count);
 
 // What pack_text.py makes: the word of packed_bits at which every sixteenth text begins, and every sixteenth entry of
 // the dictionary, which are in the order of their codes; how many codes have one bit, two bits and so on; the letters
-// in the order of theirs, two in a word.
+// in the order of theirs and the keys of the names (packed_find), two in a word.
 extern const uint16_t packed_starts[];
 extern const uint16_t packed_dictionary[];
 extern const uint16_t packed_entry_counts[];
 extern const uint16_t packed_letter_counts[];
 extern const uint16_t packed_letters[];
-extern const uint16_t packed_keys[];  // of the names: packed_find
+extern const uint16_t packed_keys[];
 extern const uint16_t packed_bits[];
 
 #if defined(__cplusplus)

@@ -7,8 +7,7 @@
 
 static const int32_t ten[] = {1L, 10L, 100L, 1000L, 10000L, 100000L, 1000000L, 10000000L, 100000000L, 1000000000L};
 
-// `digits` of them at least.
-static void put_digits(octet_writer_t* w, uint32_t value, uint16_t digits) {
+void put_digits(octet_writer_t* w, uint32_t value, uint16_t digits) {
   uint16_t reversed[10];
   uint16_t count = 0;
   while (value > 0u || count < digits) {

@@ -19,6 +19,8 @@ extern "C" {
 #define TEXT_DECIMALS_MAX 9u
 
 void put_unsigned(octet_writer_t* w, uint32_t value);
+/// With zeros in front where there are fewer digits, 1 to 10.
+void put_digits(octet_writer_t* w, uint32_t value, uint16_t digits);
 
 /// raw / 2^q with so many decimals; q = 0..40, decimals = 0..9.
 void put_fixed(octet_writer_t* w, int32_t raw, uint16_t q, uint16_t decimals);

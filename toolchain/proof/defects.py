@@ -107,7 +107,7 @@ DEFECTS = (
         "estimators",
         "voltage_match_step",
         "estimators/voltage_match.c",
-        "t->psi_q16 = q_sub_sat(t->psi_q16, q",
+        "t->psi_q16 = qc_sub_sat(t->psi_q16, q",
         "t->psi_q16 = (t->psi_q16 - q",
     ),
     # What a function promises is taken behind it, so it shows there.
