@@ -243,6 +243,14 @@ def test_what_neither_follows_nor_is_stated_is_named_with_the_default_that_holds
         assert f" {name} " not in note
 
 
+def test_what_a_rule_says_of_a_motor_of_another_size_is_named_with_its_value(native):
+    lines = told("check", "pmsyrm_15kw", "--profile", "pmsyrm_15kw").stdout.splitlines()
+    (note,) = (line for line in lines if "by rules" in line)
+    assert "start_current 40 A" in note and "speed_ramp" not in note  # the latter is what it is by default
+    (note,) = (line for line in lines if "nor implied" in line)
+    assert "drop_band 0.4 A" in note and "speed_ramp" not in note
+
+
 def test_a_bad_file_is_bad_input(native, tmp_path):
     (tmp_path / "bad.toml").write_text("[machine]\nresistanze = 1\n", encoding="utf-8")
     result = told("check", tmp_path / "bad.toml")
@@ -260,7 +268,8 @@ def test_a_new_motor_is_written_from_a_nameplate_and_works(native, tmp_path):
     path = tmp_path / "new.toml"
     made = told("new", path, *(part for pair in ANSWERS.items() for part in pair))
     assert made.exit_code == 0, made.stderr
-    assert all(words in made.stdout for words in LEFT)
+    assert "avv_bandwidth_long 200 rad/s" in made.stdout
+    assert not any(words in made.stdout for words in LEFT)  # these follow, and are what they are by default
     machine = tomllib.loads(path.read_text(encoding="utf-8"))["machine"]
     assert machine["magnet_flux"] == pytest.approx(0.16, rel=1e-3)
     assert machine["rated_peak_current"] == pytest.approx(10.89, rel=1e-3)

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from stillspin import core, json_schema, resources, toml_table
-from stillspin.cases import file_schema, flux_table, nameplate
+from stillspin.cases import file_schema, flux_table, nameplate, similarity
 from stillspin.entry import Entry, Value
 from stillspin.errors import InputError, did_you_mean
 from stillspin.scales import SCALES
@@ -28,6 +28,7 @@ class Profile:
         commission: the machine differs from its nameplate, so that a campaign lets the drive measure it first.
         motor: its name.
         not_stated: what its file leaves out, and what the drive keeps instead.
+        by_rule: parameters that are another machine's by default, and this one's by its size.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Profile:
     commission: bool = False
     motor: str = resources.DEFAULT_MOTOR
     not_stated: tuple[str, ...] = ()
+    by_rule: tuple[str, ...] = ()
 
 
 @dataclass
@@ -83,6 +85,8 @@ def load(
     machine = _read("motor", motor, schema, known)
     effects = _read("profile", name_or_path, schema, known)
     follows = nameplate.following(machine.plant, machine.parameters)
+    sized = similarity.follow(machine.plant, {**follows, **machine.parameters}, known)
+    follows |= sized
     for name, value in follows.items() if checked else ():
         if name in known:
             core.parameter(known, name, value, f"motor {machine.name}: {name}, which follows from its file")
@@ -94,6 +98,7 @@ def load(
         effects.commission,
         machine.name,
         nameplate.not_stated(machine.plant, machine.parameters, known),
+        tuple(name for name in sized if name not in effects.parameters),
     )
 
 

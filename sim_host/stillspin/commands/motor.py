@@ -11,7 +11,7 @@ import typer
 
 from stillspin import catalogue, core
 from stillspin.called import called
-from stillspin.cases import flux_table, motor_check, nameplate, profile, questions
+from stillspin.cases import flux_table, motor_check, nameplate, profile, questions, similarity
 from stillspin.cases.flux_table import Columns
 from stillspin.cases.motor_told import Motor
 from stillspin.commands import motor_defaults, parameter_file
@@ -64,8 +64,8 @@ def check(
     found = motor_check.findings(Motor(chosen, schema, known), native)
     for words in chosen.not_stated:
         print(f"note   {words}")
-    if left := motor_defaults.words(known.values(), chosen.parameters):
-        print(f"note   {left}")
+    for words in motor_defaults.notes(known, chosen.plant, chosen.parameters, chosen.by_rule):
+        print(f"note   {words}")
     for finding in found:
         print(f"{'works' if finding.works else 'WRONG':<6} {finding.title}: {finding.words}")
     wrong = sum(not finding.works for finding in found)
@@ -115,8 +115,12 @@ def new(
     answers = questions.read(typed)
     parameter_file.write(file, questions.file_text(file.stem, answers))
     stated = questions.stated(answers)
-    told = {**nameplate.following(questions.plant(answers), stated), **stated}
-    print(motor_defaults.words(core.at_scale(core.known_parameters(), told).values(), told))
+    plant = questions.plant(answers)
+    told = {**nameplate.following(plant, stated), **stated}
+    known = core.at_scale(core.known_parameters(), told)
+    sized = similarity.follow(plant, told, known)
+    for words in motor_defaults.notes(known, plant, told | sized, sized):
+        print(words)
     print(f"{file} written; what will work with it: {called()} motor check {file}")
 
 

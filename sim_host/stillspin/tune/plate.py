@@ -11,13 +11,14 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from stillspin import core
-from stillspin.cases import motor_check, nameplate, profile, questions
+from stillspin import core, scales
+from stillspin.cases import motor_check, nameplate, profile, questions, similarity
 from stillspin.cases.motor_told import Finding, Motor
 from stillspin.commands import parameter_file
 from stillspin.commands.params import transfer
 from stillspin.counted import counted
-from stillspin.drive.table import Table
+from stillspin.drive.table import Parameter, Table
+from stillspin.entry import Entry
 from stillspin.errors import InputError
 from stillspin.tune.messages import Message, shown_unit
 from stillspin.tune.workbench import Workbench
@@ -108,8 +109,18 @@ def use(bench: Workbench, typed: Mapping[str, Any]) -> Message:
 def _following(answers: questions.Answers, now: Mapping[str, float], table: Table) -> dict[str, float]:
     """In steps that the drive knows; the range of the link's divider is the board's."""
     limits = questions.stated(answers)
-    follows = nameplate.following(questions.plant(answers, now["link_full_scale"]), limits) | limits
+    plant = questions.plant(answers, now["link_full_scale"])
+    follows = nameplate.following(plant, limits) | limits
+    moved = table.with_scales(now, follows).parameters
+    follows |= similarity.values(plant, follows, {each.name: _entry(each, follows) for each in moved})
     return {name: value for name, value in follows.items() if table.has_parameter(name)}
+
+
+def _entry(parameter: Parameter, told: Mapping[str, float]) -> Entry:
+    """What the drive says of a parameter, at the scales that it is told."""
+    exponent = scales.exponent(parameter.unit, scales.of(told))
+    bounds = parameter.minimum, parameter.maximum, parameter.initial
+    return Entry(parameter.name, parameter.unit, *bounds, parameter.meaning, exponent=exponent)
 
 
 def _ranges(follows: Mapping[str, float], table: Table) -> Finding:

@@ -1,0 +1,264 @@
+"""What follows for a machine of another size from its nameplate, where the drive has a default.
+
+Speeds, currents, torques and accelerations among the defaults belong to a machine of a certain size, the reference
+below. Another machine gets them times its own size over that of the reference: to the nearest power of two where the
+default is a choice that is known no better, exactly where it is a bound. The book has the rules in a table
+(docs/motors.md).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from stillspin import core
+from stillspin.cases import open_loop
+from stillspin.entry import Entry
+
+PERIOD = 1e-4  # s, of the control interrupt
+POLARITY_SEGMENT = 4e-3  # s, of the polarity test by motion (estimators/polarity.h)
+_SPEED_PERIOD = 1e-3  # s
+_TURN_MOST = math.radians(10.0)  # electrical, in a segment of the polarity test: its current stays along the q-axis
+_FOLLOW_MOST = 2.0  # times as much as the reference
+_SWING = 2.1  # the current loop over the frequency at which EMF, inductance and inertia swing
+_LOOP_END = 10400.0  # rad/s times three half periods and the divider's (firmware/config/rules.c)
+_DIGITS = 3  # that count; one more is kept
+_NEEDED = {
+    "machine": ("pole_pairs", "inductance_d", "inductance_q", "magnet_flux", "rated_peak_current"),
+    "mechanics": ("inertia",),
+    "link": ("source_voltage",),
+}
+_RANGE = 20.0  # A, of a board that does not say its sensors'
+
+
+@dataclass(frozen=True)
+class Size:
+    """A machine on its board, in SI units."""
+
+    pole_pairs: float
+    inductance_d: float
+    inductance_q: float
+    magnet_flux: float
+    current: float
+    inertia: float
+    volts: float
+    current_range: float
+
+    @cached_property
+    def torque_per_ampere(self) -> float:
+        """N m/A, of the magnet."""
+        return 1.5 * self.pole_pairs * self.magnet_flux
+
+    @property
+    def torque(self) -> float:
+        """N m, of the magnet at rated current."""
+        return self.torque_per_ampere * self.current
+
+    @property
+    def acceleration(self) -> float:
+        """rad/s² at rated current."""
+        return self.torque / self.inertia
+
+    @property
+    def base_speed(self) -> float:
+        """rad/s, where the flux at rated current takes the link's voltage."""
+        flux = math.hypot(self.magnet_flux, self.inductance_q * self.current)
+        return self.volts / math.sqrt(3.0) / flux / self.pole_pairs
+
+    @property
+    def swing(self) -> float:
+        """rad/s, of EMF, inductance and inertia on a stiff voltage."""
+        return self.pole_pairs * self.magnet_flux * math.sqrt(1.5 / (self.inertia * self.inductance_q))
+
+    @property
+    def saliency(self) -> float:
+        """1/H by which the slopes of the current differ along the axes; 0 where there is nothing to see."""
+        return max(1.0 / self.inductance_d - 1.0 / self.inductance_q, 0.0)
+
+    @property
+    def sharpness(self) -> float:
+        """What the position changes in a window's current, over the noise of the sensors, which goes by their range."""
+        return self.volts * self.saliency / self.current_range
+
+    @property
+    def noise_volts(self) -> float:
+        """What the noise of the sensors looks like as an EMF, of 1/s."""
+        return self.current_range * self.inductance_q
+
+    def turn(self, current: float) -> float:
+        """Angle of a segment of the polarity test, rad electrical."""
+        return self.pole_pairs * self.torque_per_ampere * current / self.inertia * POLARITY_SEGMENT**2
+
+    def current_that_follows(self) -> float:
+        """A that the link reverses in half a segment of the polarity test."""
+        return self.volts / math.sqrt(3.0) * POLARITY_SEGMENT / 2.0 / (2.0 * self.inductance_q)
+
+    def loop_of_load(self, rate: float) -> float:
+        """How fast a load of so many N m in 10 ms is followed, squared, over the acceleration at rated current.
+
+        An observer of third order has a frequency by the cube root of its noises; where the saliency's axis turns with
+        the current, the load that is fed forward closes a loop over the angle with this gain.
+        """
+        followed: float = (rate * self.pole_pairs / self.inertia * self.sharpness) ** (2.0 / 3.0)
+        return followed / (self.pole_pairs * self.acceleration)
+
+
+REFERENCE = Size(4, 4.9e-3, 7.8e-3, 0.16, 10.8894, 0.00455, 300.0, 20.0)
+"""The machine and board for which the drive's defaults are."""
+
+
+def of(plant: core.Plant) -> Size | None:
+    """The size that a motor's file states; none where an entry is missing."""
+    if any(key not in plant.get(section, {}) for section, keys in _NEEDED.items() for key in keys):
+        return None
+    stated = [float(plant[section][key]) for section, keys in _NEEDED.items() for key in keys]
+    values = [*stated, float(plant.get("adc", {}).get("current_range", _RANGE))]
+    return Size(*values) if min(values) > 0.0 else None
+
+
+def _power(ratio: float) -> float:
+    """The nearest power of two."""
+    return 2.0 ** round(math.log2(ratio))
+
+
+def _halved(value: float, fits: Callable[[float], bool]) -> float:
+    while not fits(value):
+        value /= 2.0
+    return value
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """A machine, what its drive is told already, and the drive's parameters at its scales."""
+
+    size: Size
+    told: Mapping[str, float]
+    known: Mapping[str, Entry]
+
+    def default(self, name: str) -> float:
+        """For the reference, whose scales are 0."""
+        return float(self.known[name].default) / 2.0 ** self.known[name].exponent
+
+    def limited(self, current: float) -> float:
+        return min(current, self.told.get("current_limit", current))
+
+
+def _by_current(asked: _Asked, name: str) -> float:
+    return asked.limited(asked.default(name) * _power(asked.size.current / REFERENCE.current))
+
+
+def _polarity_current(asked: _Asked, name: str) -> float:
+    """Enough that the turn of a light shaft shows, as little as a heavy one bears; and the link has to reverse it."""
+    size, least = asked.size, _by_current(asked, name)
+    if size.saliency == 0.0:
+        return least
+    seen = size.turn(least) * size.sharpness / (REFERENCE.turn(asked.default(name)) * REFERENCE.sharpness)
+    wanted = least * max(_power(1.0 / seen), 1.0)
+    most = min(size.current, size.current_that_follows())
+    return _halved(min(wanted, max(most, least)), lambda current: size.turn(current) <= _TURN_MOST)
+
+
+def _load(asked: _Asked, name: str) -> float:
+    """All three torques of the observer alike; where the EMF alone shows the angle, no more than the default."""
+    size, rate = asked.size, asked.default("observer_load_rate")
+    factor = _power(size.torque / REFERENCE.torque)
+    if open_loop.share(size.inductance_d, size.inductance_q) < open_loop.SALIENCY_LEAST:
+        return min(asked.default(name) * factor, float(asked.known[name].default))
+    most = _FOLLOW_MOST * REFERENCE.loop_of_load(rate)
+    return asked.default(name) * _halved(factor, lambda factor: size.loop_of_load(rate * factor) <= most)
+
+
+def _by_base_speed(asked: _Asked, name: str) -> float:
+    return asked.default(name) * _power(asked.size.base_speed / REFERENCE.base_speed)
+
+
+def _up_to_top_speed(asked: _Asked, name: str) -> float:
+    found = _by_base_speed(asked, name)
+    return min(found, asked.told.get("speed_limit", found))
+
+
+def _ramp(asked: _Asked, name: str) -> float:
+    """A share of what the rated current accelerates with, and no faster to the base speed than the reference."""
+    size = asked.size
+    ratio = min(size.acceleration / REFERENCE.acceleration, size.base_speed / REFERENCE.base_speed)
+    return asked.default(name) * _power(ratio)
+
+
+def _if_ramp(asked: _Asked, name: str) -> float:
+    """The same share of what the turning current accelerates with."""
+    current = asked.told.get("if_current", _by_current(asked, "if_current"))
+    usual = REFERENCE.torque_per_ampere * asked.default("if_current") / REFERENCE.inertia
+    return asked.default(name) * _power(asked.size.torque_per_ampere * current / asked.size.inertia / usual)
+
+
+def _speed_alpha(asked: _Asked, name: str) -> float:
+    """Of a speed error the same share is closed, but no more rated current asked for by the speed's noise."""
+
+    def step(size: Size) -> float:
+        return size.torque_per_ampere * _SPEED_PERIOD / size.inertia
+
+    def electrical(size: Size) -> float:
+        return size.pole_pairs * size.acceleration
+
+    usual = asked.default(name) * step(REFERENCE) ** 2
+    share = usual / (1.0 + usual) * min(1.0, electrical(asked.size) / electrical(REFERENCE))
+    return share / (1.0 - share) / step(asked.size) ** 2
+
+
+def _current_bandwidth(asked: _Asked, name: str) -> float:
+    most = _LOOP_END / (3.0 + asked.told.get("current_divider", 1.0))
+    return max(asked.default(name), min(math.ceil(_SWING * asked.size.swing), most))
+
+
+def _synchronism_floor(asked: _Asked, name: str) -> float:
+    """What the sensors' noise looks like; no less than the default in volts of the board's size, for the devices."""
+    noise = asked.default(name) * _power(asked.size.noise_volts / REFERENCE.noise_volts)
+    return max(noise, float(asked.known[name].default))
+
+
+_Law = Callable[[_Asked, str], float]
+RULES: dict[str, _Law] = {
+    **dict.fromkeys(("blend_low", "blend_high", "flux_low", "flux_high"), _by_base_speed),
+    **dict.fromkeys(("if_speed", "spin_speed", "speed_input_full"), _up_to_top_speed),
+    **dict.fromkeys(("start_current", "if_current"), _by_current),
+    "polarity_current": _polarity_current,
+    **dict.fromkeys(("observer_load_rate", "observer_load_quiet", "observer_load_step"), _load),
+    "speed_ramp": _ramp,
+    "if_acceleration": _if_ramp,
+    "speed_alpha": _speed_alpha,
+    "current_bandwidth": _current_bandwidth,
+    "synchronism_floor": _synchronism_floor,
+}
+"""By parameter; what a motor's file states of one goes before."""
+
+
+def values(plant: core.Plant, told: Mapping[str, float], known: Mapping[str, Entry]) -> dict[str, float]:
+    """What the rules say, within the ranges of the drive's parameters; nothing where the nameplate is not complete.
+
+    Args:
+        plant: what a motor's file states of machine and board.
+        told: what it states of the drive's parameters, and what follows from it; no rule says anything of these.
+        known: the drive's parameters at its scales.
+    """
+    size = of(plant)
+    if size is None:
+        return {}
+    asked = _Asked(size, told, known)
+    return {name: _within(known[name], law(asked, name)) for name, law in RULES.items() if name in known.keys() - told}
+
+
+def follow(plant: core.Plant, told: Mapping[str, float], known: Mapping[str, Entry]) -> dict[str, float]:
+    """Of these the ones that are not the drive's defaults; see `values`."""
+    found = values(plant, told, known)
+    return {
+        name: value
+        for name, value in found.items()
+        if not math.isclose(value, float(known[name].default), rel_tol=10.0**-_DIGITS)
+    }
+
+
+def _within(entry: Entry, value: float) -> float:
+    rounded = float(f"{value:.{_DIGITS + 1}g}")
+    return min(max(rounded, entry.minimum or rounded), entry.maximum or rounded)

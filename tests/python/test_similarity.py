@@ -1,0 +1,151 @@
+"""What follows for a machine of another size; the reference keeps the drive's defaults, also in other units."""
+
+import dataclasses
+import importlib
+
+import pytest
+from test_scales import PLANT, larger
+
+from stillspin import core, resources
+from stillspin.cases import nameplate, profile, similarity
+from stillspin.scales import SCALES
+
+NAMES = [path.stem for path in resources.directory(resources.CATALOGUE).glob("*.toml")]
+
+
+@pytest.fixture(scope="module")
+def native():
+    return importlib.import_module("stillspin._core")
+
+
+def stated(**changes):
+    """The reference as a motor's file states it, with a change or two."""
+    size = dataclasses.replace(similarity.REFERENCE, **changes)
+    return {
+        "machine": {
+            "pole_pairs": size.pole_pairs,
+            "resistance": 0.32,
+            "inductance_d": size.inductance_d,
+            "inductance_q": size.inductance_q,
+            "magnet_flux": size.magnet_flux,
+            "rated_peak_current": size.current,
+            "cross_inductance": 1.18e-4,
+        },
+        "mechanics": {"inertia": size.inertia, "viscous_friction": 0.003},
+        "link": {"source_voltage": size.volts},
+        "adc": {"current_range": size.current_range, "voltage_range": 450.0},
+    }
+
+
+def followed(native, told=None, **changes):
+    return similarity.follow(stated(**changes), told or {}, core.parameters(native))
+
+
+def times(native, name, **changes):
+    default = core.parameters(native)[name].default
+    return followed(native, **changes).get(name, default) / default
+
+
+@pytest.mark.parametrize("name", ["A", "B", "B-SPM"])
+def test_the_motors_that_ship_are_of_the_size_of_the_defaults(native, name):
+    loaded = profile.load("bench", core.plant_schema(native), core.parameters(native), name)
+    assert loaded.by_rule == ()
+
+
+def test_the_reference_is_motor_a(native):
+    plant = profile.load("ideal", core.plant_schema(native), core.parameters(native), "A").plant
+    assert similarity.of(plant) == similarity.REFERENCE
+
+
+@pytest.mark.parametrize("scales", [(5, 1), (-4, -5), (2, -3)])
+def test_the_same_machine_in_other_units_keeps_the_defaults(native, scales):
+    """So every rule has the dimensions of what it says: a machine that runs bit for bit alike is told alike."""
+    plant = {
+        section: {key: larger(value, PLANT.get(section, {}).get(key, (0, 0)), scales) for key, value in keys.items()}
+        for section, keys in stated().items()
+    }
+    told = nameplate.following(plant, {"current_limit": larger(14.0, (1, 0), scales), "speed_limit": 3300})
+    told |= dict(zip(SCALES, map(float, scales), strict=True))
+    assert similarity.follow(plant, told, core.at_scale(core.parameters(native), told)) == {}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_what_follows_for_a_motor_of_the_catalogue_is_within_the_ranges_and_its_file_goes_before(native, name):
+    schema, known = core.plant_schema(native), core.parameters(native)
+    loaded = profile.load(name, schema, known, name, checked=False)
+    entries = core.at_scale(known, loaded.parameters)
+    assert loaded.by_rule, "each is of another size"
+    for parameter in loaded.by_rule:
+        core.parameter(entries, parameter, loaded.parameters[parameter], name)
+    told = dict.fromkeys(loaded.by_rule, 1.0)
+    assert not set(similarity.follow(loaded.plant, told, entries)) & set(told)
+
+
+def test_a_nameplate_that_is_not_complete_has_no_size(native):
+    plant = stated()
+    del plant["mechanics"]["inertia"]
+    assert similarity.follow(plant, {}, core.parameters(native)) == {}
+
+
+def test_speeds_go_by_the_base_speed(native):
+    for name in ("blend_low", "blend_high", "flux_low", "flux_high", "if_speed", "spin_speed"):
+        assert times(native, name, volts=1200.0) == 4.0
+        assert times(native, name, volts=600.0, current_range=40.0) == 2.0
+    assert followed(native, {"speed_limit": 900.0}, volts=1200.0)["spin_speed"] == 900.0
+
+
+def test_a_ramp_is_a_share_of_what_the_machine_accelerates_with_but_not_faster_to_its_base_speed(native):
+    assert times(native, "speed_ramp", inertia=4 * 0.00455) == 0.25
+    assert times(native, "speed_ramp", inertia=0.00455 / 8) == 1.0
+    assert times(native, "if_acceleration", inertia=0.00455 / 8) == 8.0
+
+
+def test_a_speed_error_asks_for_no_larger_share_of_the_rated_current_than_with_the_reference(native):
+    """Predictive law: of the error so much is closed in a step, by so many amperes for a rad/s."""
+
+    def amperes(inertia):
+        step = similarity.REFERENCE.torque_per_ampere * 1e-3 / inertia
+        weight = 200.0 * times(native, "speed_alpha", inertia=inertia) * step**2
+        return weight / (1.0 + weight) / step
+
+    usual = amperes(0.00455)
+    assert amperes(0.00455 * 5.0) == pytest.approx(usual, rel=0.01)
+    assert amperes(0.00455 / 5.0) == pytest.approx(usual / 5.0, rel=0.01)
+
+
+def test_torques_of_the_load_observer_go_by_the_rated_one(native):
+    for name in ("observer_load_rate", "observer_load_quiet", "observer_load_step"):
+        assert times(native, name, current=4 * 10.8894, inertia=4 * 0.00455) == 4.0
+
+
+def test_a_load_is_followed_the_slower_the_sharper_the_angle_is_seen(native):
+    """What turns with the current would be taken for a load, and fed back as a current."""
+    assert times(native, "observer_load_rate", inductance_d=4.9e-4, inductance_q=7.8e-4) == 0.25
+    for name in NAMES:
+        loaded = profile.load(name, core.plant_schema(native), core.parameters(native), name, checked=False)
+        size = similarity.of(loaded.plant)
+        rate = loaded.parameters.get("observer_load_rate")
+        if rate and "observer_load_rate" in loaded.by_rule:
+            assert size.loop_of_load(rate) <= 2.05 * similarity.REFERENCE.loop_of_load(1.0), name
+
+
+def test_the_polarity_test_turns_a_heavy_shaft_by_more_current_and_a_light_one_by_less(native):
+    assert times(native, "polarity_current", inertia=2 * 0.00455) == 2.0
+    heavy = followed(native, inertia=20 * 0.00455)["polarity_current"]
+    assert heavy == pytest.approx(min(10.8894, similarity.REFERENCE.current_that_follows()), rel=1e-3)
+    light = dataclasses.replace(similarity.REFERENCE, inertia=0.00455 / 50.0)
+    assert times(native, "polarity_current", inertia=light.inertia) < 1.0
+    assert light.turn(followed(native, inertia=light.inertia)["polarity_current"]) < 0.175
+
+
+def test_the_current_loop_is_faster_than_what_swings_by_itself(native):
+    light = dataclasses.replace(similarity.REFERENCE, inertia=0.00455 / 50.0)
+    assert followed(native, inertia=light.inertia)["current_bandwidth"] == pytest.approx(2.1 * light.swing, abs=1.0)
+    assert followed(native, inertia=0.00455 / 500.0)["current_bandwidth"] == 2600.0
+    told = {"current_divider": 2.0}
+    assert followed(native, told, inertia=0.00455 / 500.0)["current_bandwidth"] == 2080.0
+
+
+def test_the_watch_over_synchronism_bears_what_the_sensors_noise_looks_like(native):
+    assert times(native, "synchronism_floor", inductance_q=8 * 7.8e-3) == 8.0
+    assert times(native, "synchronism_floor", inductance_q=7.8e-3 / 2) == 1.0
