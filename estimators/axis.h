@@ -36,6 +36,10 @@ void axis_add(axis_t* s, const regression_t* r);
 
 static inline bool axis_is_complete(const axis_t* s) { return s->count >= AXIS_PERIODS; }
 
+/// Whether the saliency is too small to show an axis: below a sixteenth of the mean, Lq less than an eighth above Ld.
+/// The two rounds of a start are sure of it within a fortieth.
+static inline bool axis_is_hidden(int32_t mean_q30, int32_t half_q30) { return half_q30 < q_shr(mean_q30, 4); }
+
 /// m: the model that the regressions were made with.
 axis_result_t axis_evaluate(const axis_t* s, const machine_model_t* m);
 

@@ -5,6 +5,9 @@
 // when the gates are off again the background level turns them into parameters, checks each for plausibility and writes
 // those that pass. What each phase measures and how it is evaluated stands at the head of its file; docs/commissioning.
 //
+// A machine that shows no axis at rest is not held: its rotor turns to where the staircase's current points, a current
+// vector starts the spin, and there is no map.
+//
 // The currents reach the limit, which may be several times what the machine bears for long. Where heat sink or overload
 // take something of the limit away the measuring waits at rest until all of it is back (interlock_is_warm).
 //
@@ -85,6 +88,7 @@ typedef struct {
   bool predicting;        // the angle runs ahead on the torque alone
   bool solve_motion;      // the background level owes acceleration and torque constant from the spin
   bool evaluate;          // the sums are complete and the gates are off
+  bool uniform;           // no axis at rest: the shaft follows the current, and is not held
   uint32_t target_bam;    // where the shaft is held
   uint32_t goal_bam;      // and where it is to be taken
   int32_t torque_q24;     // 3/2 p flux and

@@ -32,13 +32,15 @@ void commissioning_hold(drive_t* d) {
       qc_sub_sat(qc_mul_sat(error_bam, STIFFNESS_Q30, 22), qc_mul_sat(p->speed_bpp, DAMPING_Q30, 22));
   const int32_t torque_q20 = qc_mul_sat(qc_add_sat(command_q8, p->load_accel_q8), d->model.torque_per_accel_q24, 20);
   const int32_t current = q_div(torque_q20, machine_torque_constant_q24(&d->model, d->control.reference_q20.d), 24);
-  const int32_t limit = d->config.values.current_limit / 4;
+  const int32_t limit = commissioning.uniform ? 0 : d->config.values.current_limit / 4;
   d->control.reference_q20.q = q_clamp(current, -limit, limit);
 }
 
 bool commissioning_align(drive_t* d) {
   commissioning_t* const c = &commissioning;
   if (c->tick == 0) {
+    c->uniform = d->found.uniform;
+    d->control.closed = true;
     c->target_bam = d->position.selected.angle_bam;
     const int32_t sixths = (int32_t)q_div((int32_t)(c->target_bam / 2u), SIXTH_BAM / 2, 0);
     c->goal_bam = (uint32_t)sixths * (uint32_t)SIXTH_BAM;
@@ -52,8 +54,20 @@ bool commissioning_align(drive_t* d) {
   return true;
 }
 
-// AVV alone, or no measurement at all and the angle by the torque.
+void commissioning_add_still(const drive_t* d) {
+  deviation_t first;
+  deviation_t second;
+  if (commissioning_pair(d, &first, &second)) tensor_add(&commissioning.unsaturated, &first, &second);
+}
+
+// AVV alone, or no measurement at all and the angle by the torque. A machine without an axis is not measured at rest:
+// its rotor turns to where the current points.
 void commissioning_estimate(drive_t* d, estimator_input_t* in) {
+  if (commissioning.uniform) {
+    const estimator_output_t still = {commissioning.target_bam, 0, 0, 0};
+    d->position.selected = still;
+    return;
+  }
   if (!commissioning.predicting) {
     d->position.selected = position_sources[POSITION_AVV]->step(d, in);
     return;

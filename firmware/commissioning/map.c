@@ -139,13 +139,6 @@ static void empty_next_group(map_t* m) {
   g->current = 0;
 }
 
-// The last part of a pause, at rest, is the map's point without current.
-static void add_pause(drive_t* d) {
-  deviation_t first;
-  deviation_t second;
-  if (commissioning_pair(d, &first, &second)) tensor_add(&commissioning.unsaturated, &first, &second);
-}
-
 // A level is as far as its last group is full.
 int32_t commissioning_map_done(const map_t* m) {
   static const int16_t ends[MAP_LEVELS + 1u] = {0, 270, 585, 820, 1000};
@@ -180,7 +173,8 @@ bool commissioning_map(drive_t* d) {
   move_on(m);
   commissioning_hold(d);
   if (m->tick == length && interlock_is_warm()) return false;
-  if (m->tick > length - STILL_PERIODS) add_pause(d);
+  // The last part of a pause, at rest, is the map's point without current.
+  if (m->tick > length - STILL_PERIODS) commissioning_add_still(d);
   m->tick = qc_add_sat(m->tick, 1);
   if (m->tick <= length) return false;
   if (level_complete(m)) {

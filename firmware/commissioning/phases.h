@@ -15,6 +15,8 @@ int32_t commissioning_map_done(const map_t* m);           // share of it in time
 bool commissioning_spin(drive_t* d);                      // commissioning/spin.c
 void commissioning_hold(drive_t* d);                      // keeps the shaft at target_bam by i_q
 void commissioning_set_d(drive_t* d, int32_t level_q20);  // i_d reference, with a limited slope
+/// A pair of windows at rest and without current, for the inductances there.
+void commissioning_add_still(const drive_t* d);
 /// Angle and speed while the shaft is held (commissioning/hold.c).
 void commissioning_estimate(drive_t* d, estimator_input_t* in);
 /// The period's two opposite windows against the model, in the frame that they were turned into; false when there are

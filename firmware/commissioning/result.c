@@ -175,7 +175,7 @@ static void judge_spin(const commissioning_t* c, commissioning_verdict_t resista
   offer(r, ID_magnet_flux, v.flux_q28, flux);
   const int32_t inertia_q24 = v.inertia_up_q24 / 2 + v.inertia_down_q24 / 2;
   commissioning_verdict_t inertia = worst(measured, agree(v.inertia_up_q24, v.inertia_down_q24, 5));
-  inertia = worst(inertia, agree(inertia_q24, inertia_from_trains(c, inertia_q24), 4));
+  if (!c->uniform) inertia = worst(inertia, agree(inertia_q24, inertia_from_trains(c, inertia_q24), 4));
   inertia = worst(inertia, (inertia_q24 <= 0) ? VERDICT_NOT_PHYSICAL : near(inertia_q24, p->inertia, 20));
   inertia = worst(inertia, (flux == VERDICT_USED) ? flux : VERDICT_DEPENDS);
   offer(r, ID_inertia, inertia_q24, inertia);
@@ -190,7 +190,11 @@ void commissioning_judge(const commissioning_t* c, commissioning_report_t* repor
   const int32_t mismatch_q30 = qc_add_sat(c->mismatch_q30, beyond_q30);
   const commissioning_verdict_t resistance = judge_staircase(&stairs, report);
   const commissioning_verdict_t unsaturated = judge_unsaturated(&zero, mismatch_q30, report);
-  judge_map(c, &zero, unsaturated, report);
+  if (c->uniform) {
+    offer(report, ID_start_method, 1, VERDICT_USED);
+  } else {
+    judge_map(c, &zero, unsaturated, report);
+  }
   judge_spin(c, resistance, report);
   // Currents that are measured wrong spoil everything.
   if (report->list[AT_SENSORS].verdict != VERDICT_USED) refuse_all(report, 0);

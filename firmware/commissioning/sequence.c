@@ -18,7 +18,7 @@ static commissioning_report_t report;
 
 typedef struct {
   bool (*step)(drive_t* d);
-  int16_t share;  // per mille of the time of the whole, as motor A takes it
+  int16_t begins;  // per mille of the time of the whole, as motor A takes it
 } phase_t;
 
 void commissioning_reset(void) { clear(&commissioning, sizeof commissioning); }
@@ -29,10 +29,11 @@ static bool at_once(drive_t* d) {
 }
 
 static const phase_t phases[] = {{at_once, 0},
-                                 {commissioning_align, 8},
-                                 {commissioning_climb, 170},
-                                 {commissioning_spin, 42},
-                                 {commissioning_map, 780}};
+                                 {commissioning_align, 0},
+                                 {commissioning_climb, 8},
+                                 {commissioning_spin, 178},
+                                 {commissioning_map, 220},
+                                 {at_once, 1000}};
 
 // The sensors' ringing after an edge is a tenth of a degree at the usual settle time; here that counts. The parameters
 // put it back: every end of a commissioning lets them be loaded again.
@@ -51,6 +52,7 @@ static void commissioning_begin(drive_t* d, drive_state_t behind) {
   c->evaluate = false;
   c->solve_motion = false;
   c->predicting = false;
+  c->uniform = false;
   settle_longer(d);
   start_state.begin(d, DRIVE_COMMISSION);
 }
@@ -69,8 +71,10 @@ static void next_phase(drive_t* d) {
   c->phase = (commissioning_phase_t)((uint16_t)c->phase + 1u);
   c->tick = 0;
   d->flags.frozen = c->phase != COMMISSIONING_ALIGN;
-  if (c->phase == COMMISSIONING_MAP) c->mismatch_q30 = d->trim.mismatch_q30;
-  if (c->phase != COMMISSIONING_EVALUATE) return;
+  if (c->phase != COMMISSIONING_EVALUATE) {
+    c->mismatch_q30 = d->trim.mismatch_q30;
+    return;
+  }
   hal_pwm_gates_off();
   d->control.closed = false;
   d->flags.spins = false;
@@ -146,10 +150,9 @@ static int32_t within_phase(const commissioning_t* c) {
 
 int32_t drive_commissioning_progress(void) {
   const commissioning_t* const c = &commissioning;
-  if (c->phase == COMMISSIONING_EVALUATE) return 1000;
-  int32_t before = 0;
-  for (uint16_t k = 0; k < (uint16_t)c->phase; k++) before += phases[k].share;
-  return before + within_phase(c) * phases[c->phase].share / 1000;
+  const phase_t* const p = &phases[c->phase];
+  if (c->phase == COMMISSIONING_EVALUATE) return p->begins;
+  return p->begins + within_phase(c) * (p[1].begins - p->begins) / 1000;
 }
 
 uint16_t drive_commissioning_count(void) {

@@ -1,5 +1,6 @@
 #include "firmware/commissioning/solve.h"
 
+#include "estimators/axis.h"
 #include "estimators/fit.h"
 #include "hal/qmath/qcall.h"
 
@@ -100,7 +101,7 @@ map_values_t unsaturated_solve(const tensor_sums_t* s, const machine_model_t* m)
   map_values_t v = {false, 0, 0, 0, 0, 0, 0};
   tensor_axes_t a;
   if (!tensor_solve(s, m, &a) || a.half_q30 >= a.mean_q30) return v;
-  invert(&v, a.mean_q30, a.half_q30);
+  invert(&v, a.mean_q30, axis_is_hidden(a.mean_q30, a.half_q30) ? 0 : a.half_q30);
   v.valid = true;
   return v;
 }

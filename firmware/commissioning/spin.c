@@ -10,7 +10,7 @@
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
-#include "firmware/start/step.h"
+#include "firmware/start/phases.h"
 #include "hal/qmath/qcall.h"
 
 #define SETTLE_PERIODS 4000
@@ -40,17 +40,20 @@ static int32_t target_rpm_q16(uint16_t leg) {
   return (leg == (uint16_t)LEG_UP) ? high_q16 : high_q16 / 3;
 }
 
-static void enter_leg(uint16_t leg) {
-  commissioning.spin.leg = leg;
-  commissioning.spin.tick = 0;
+// What shows no axis at rest is turned by a current vector first, and comes back with its speed.
+static void start_by_vector(drive_t* d) {
+  d->source = position_sources[POSITION_OBSERVER];  // until the parameters are loaded again
+  d->control.target_bpp = 0;
+  drive_enter(d, DRIVE_START);
+  d->flags.behind = DRIVE_COMMISSION;
+  start_phases[START_IF_RAMP]->begin(d);
 }
 
 static void begin(drive_t* d) {
+  if (!d->flags.spins) drive_bumpless_transfer(d, d->position.selected.angle_bam, 0);
   d->flags.spins = true;
   d->flags.frozen = false;
-  drive_bumpless_transfer(d, d->position.selected.angle_bam, 0);
-  d->control.target_bpp = 0;
-  enter_leg((uint16_t)LEG_FIRST);
+  d->control.target_bpp = d->control.ramp.value;
 }
 
 // Moves the speed reference towards the leg's; true when it is there. The drive's own ramp may be slower still.
@@ -86,12 +89,17 @@ bool commissioning_spin(drive_t* d) {
   // Two things that are long, in a period each.
   if (commissioning.tick == 0) {
     clear(s, sizeof *s);
+    if (commissioning.uniform) start_by_vector(d);
     return false;
   }
   if (commissioning.tick == 1) begin(d);
   if (!d->flags.spins) return hand_back(d);
   const bool arrived = approach(d);
   if (s->leg >= (uint16_t)LEG_STOP) {
+    if (commissioning.uniform) {
+      commissioning.phase = COMMISSIONING_MAP;  // which wants a shaft that is held
+      return true;
+    }
     s->tick = qc_add_sat(s->tick, arrived ? 1 : 0);
     // The background level comes first.
     if (s->tick > STILL_PERIODS && start_has_exclusive_slot(d)) (void)hand_back(d);
@@ -101,6 +109,8 @@ bool commissioning_spin(drive_t* d) {
   if (settling && s->leg != (uint16_t)LEG_FIRST) add_ramp(d, &s->ramp[s->leg - 1u]);
   if (!settling) add_station(d, &s->station[s->leg]);
   s->tick = qc_add_sat(s->tick, arrived ? 1 : 0);
-  if (s->tick >= SETTLE_PERIODS + STATION_PERIODS) enter_leg((uint16_t)(s->leg + 1u));
+  if (s->tick < SETTLE_PERIODS + STATION_PERIODS) return false;
+  s->leg++;
+  s->tick = 0;
   return false;
 }

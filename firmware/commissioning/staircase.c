@@ -102,12 +102,14 @@ bool commissioning_climb(drive_t* d) {
     s->one_volt = d->config.dead_time;
     s->one_volt.drop_q16 = 65536L;
     dead_time_design(&s->one_volt);
+    tensor_reset(&c->unsaturated);
   }
   commissioning_hold(d);
   if (s->index >= STAIRCASE_LEVELS) {
     commissioning_set_d(d, 0);
     if (d->control.reference_q20.d != 0) return false;
     s->tick = qc_add_sat(s->tick, 1);
+    commissioning_add_still(d);
     return s->tick > SETTLE_PERIODS + 1;
   }
   if (s->tick == 0 && interlock_is_warm()) {

@@ -30,7 +30,7 @@ PARAMETER(123, map_known, NONE, 0, 0, 0, 1, 0, STOPPED, "1: the inductance map i
 // Commissioning
 PARAMETER(130, sensor_mismatch, PERCENT, 16, 3, -5000, 5000, 0, STOPPED,
           "gain of current sensor a above the mean of both, that of b as much below")
-PARAMETER(131, spin_speed, RPM, 8, 0, 300, 20000, 600, STOPPED, "speed of the commissioning's spin")
+PARAMETER(131, spin_speed, RPM, 8, 0, 30, 20000, 600, STOPPED, "speed of the commissioning's spin")
 
 // Start and supervision
 PARAMETER(100, polarity_current, A, 20, 2, 20, 10000, 300, STOPPED, "current of the polarity test")

@@ -54,6 +54,7 @@ typedef struct {
   uint16_t phase;    // start_phase_t: it is in this one, or ended in it
   int32_t sigma_q8;  // confidence in the polarity, standard errors
   wiring_t wiring;   // what the axis was found with says about it
+  bool uniform;      // the inductances hardly differ, nothing shows the axis at rest
 } start_found_t;
 
 #endif

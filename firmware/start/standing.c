@@ -40,6 +40,10 @@ static start_phase_t step_axis(drive_t* d) {
     drive_trip(d, fault);
     return START_GOES_ON;
   }
+  if (d->found.uniform && d->flags.behind == DRIVE_COMMISSION) {
+    start_run(d, 0, 0);
+    return START_GOES_ON;
+  }
   if (!start_is_open_loop(d)) return START_SETTLE;
   d->model = d->config.nameplate;
   return START_IF_RAMP;

@@ -96,6 +96,7 @@ bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam) {
   }
   const axis_result_t axis = axis_evaluate(&s->axis, &d->model);
   inverse_inductance_preset(&d->model, axis.mean_q30, axis.half_q30);
+  d->found.uniform = axis_is_hidden(axis.mean_q30, axis.half_q30);
   *axis_bam = axis.angle_bam;
   return true;
 }

@@ -80,6 +80,25 @@ TEST_F(CommissioningJudge, AMachineThatFitsIsUsedAsAWhole) {
   EXPECT_NEAR(real(parameters.friction, 24), 0.003, 1e-5);
 }
 
+// What shows no axis has one inductance and no map, and is to be turned by a vector from now on.
+TEST_F(CommissioningJudge, AMachineWithoutSaliencyIsUsedWithoutAMap) {
+  c.uniform = true;
+  unsaturated({6.0e-3, 6.4e-3, 0.0});
+  c.map.group[3][0].position = 1LL << 40;  // of an earlier one
+  const parameters_t before = parameters;
+  commissioning_report_t report;
+  commissioning_judge(&c, &report);
+  ASSERT_EQ(commissioning_use(&report), COMMISSIONING_DONE);
+  EXPECT_EQ(report.count, 10);
+  EXPECT_NEAR(real(parameters.inductance_d, 20), 2.0 / (1.0 / 6.0 + 1.0 / 6.4), 3e-3);
+  EXPECT_EQ(parameters.inductance_q, parameters.inductance_d);
+  EXPECT_EQ(parameters.start_method, 1);
+  EXPECT_EQ(parameters.lqq_4, before.lqq_4);
+  EXPECT_EQ(parameters.map_known, 0);
+  EXPECT_NEAR(real(parameters.magnet_flux, 28), 0.1552, 1e-5);
+  EXPECT_NEAR(real(parameters.inertia, 24), 0.00546, 1e-5);
+}
+
 // The map is kept as shares of the inductances without current, its mutual inductance as it is.
 TEST_F(CommissioningJudge, TheMapIsPercentOfTheUnsaturatedMachine) {
   const auto at = [](int level) {

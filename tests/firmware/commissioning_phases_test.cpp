@@ -31,6 +31,20 @@ TEST_F(Phases, TheShaftIsHeldByASecondOrderLaw) {
   }
 }
 
+// Its rotor turns to where the current points: the frame is that of the target, and nothing is held.
+TEST_F(Phases, AShaftThatShowsNoAxisFollowsTheCurrent) {
+  commissioning.uniform = true;
+  inside::selected() = {bam(1.0), bpp(5.0), accel_q8(200.0), 32767};
+  commissioning.target_bam = bam(1.4);
+  commissioning_hold(&drive);
+  EXPECT_EQ(inside::reference_dq_q20().q, 0);
+  estimator_input_t in{};
+  commissioning_estimate(&drive, &in);
+  EXPECT_EQ(inside::selected().angle_bam, bam(1.4));
+  EXPECT_EQ(inside::selected().speed_bpp, 0);
+  EXPECT_EQ(inside::selected().load_accel_q8, 0);
+}
+
 // To the nearest sixth of a turn, 0.02 degrees in a period, and 600 ms in all.
 TEST_F(Phases, TheShaftIsTakenToASixthOfATurn) {
   for (const auto& [from, to] : {std::pair{0.0, 0.0}, {29.0, 0.0}, {31.0, 60.0}, {-80.0, -60.0}, {179.0, 180.0}}) {
@@ -168,6 +182,36 @@ TEST_F(Phases, TheSpinSumsStationsAndRamps) {
   EXPECT_TRUE(step(commissioning_spin));
   EXPECT_EQ(inside::model().torque_q24, 123456);
   EXPECT_EQ(inside::model().accel_q12, 654321);
+}
+
+// The start's vector brings it to speed and hands it back turning; it is not brought to rest, where nothing holds it.
+TEST_F(Phases, TheSpinOfAShaftThatShowsNoAxisBeginsWithAVector) {
+  commissioning.uniform = true;
+  commissioning.phase = COMMISSIONING_SPIN;
+  inside::target_bpp() = -bpp_of(100);  // a command of before
+  EXPECT_FALSE(step(commissioning_spin));
+  ASSERT_EQ(inside::state(), DRIVE_START);
+  EXPECT_EQ(inside::start_found().phase, START_IF_RAMP);
+  EXPECT_EQ(inside::flags().behind, DRIVE_COMMISSION);
+  EXPECT_TRUE(inside::flags().open_loop);
+  EXPECT_EQ(inside::target_bpp(), 0) << "forward";
+
+  drive_enter(&drive, DRIVE_COMMISSION);  // as the ramp's end does it
+  inside::flags().spins = true;
+  inside::selected() = {bam(0.4), bpp_of(300), 0, 32767};
+  inside::speed_ramp().value = bpp_of(300);
+  EXPECT_FALSE(step(commissioning_spin));
+  EXPECT_EQ(inside::selected().speed_bpp, bpp_of(300)) << "what is known of the shaft stays";
+  EXPECT_NEAR(inside::target_bpp(), bpp_of(300), bpp_of(600) / 3000 + 1);
+  int n = 0;
+  while (!step(commissioning_spin)) {
+    inside::speed_ramp().value = inside::selected().speed_bpp = inside::target_bpp();
+    ASSERT_LT(++n, 100000);
+  }
+  for (const spin_station_t& at : commissioning.spin.station) EXPECT_EQ(at.periods, 10000);
+  EXPECT_NEAR(inside::selected().speed_bpp, bpp_of(200), 300);
+  EXPECT_TRUE(inside::flags().spins);
+  EXPECT_EQ(commissioning.phase, COMMISSIONING_MAP) << "which is passed over";
 }
 
 // Within the speeds that are allowed, and no faster than the drive's own ramp.

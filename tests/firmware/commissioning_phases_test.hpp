@@ -9,7 +9,9 @@ extern "C" {
 #include "firmware/commissioning/outcome.h"
 #include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/mode/mode.h"
 #include "firmware/mode/states.h"
+#include "firmware/start/phases.h"
 }
 
 namespace stillspin::test {

@@ -93,6 +93,38 @@ TEST_F(Commissioning, AStartByAVectorLooksAtTheWiresOnlyBehindAListening) {
   }
 }
 
+// What shows no axis is measured as it stands; a start of the same machine goes on as it did.
+TEST_F(Commissioning, AMachineWithoutSaliencyIsNotAskedForItsPolarity) {
+  for (const bool asked : {true, false}) {
+    for (const double saliency : {0.05, 0.08}) {
+      SetUp();
+      parameters.flying_start = 0;
+      use_parameters();
+      make_ready();
+      asked ? drive_command_commission() : drive_command_start();
+      periods(3);
+      ASSERT_EQ(inside::start_found().phase, START_AXIS);
+      const machine_model_t& m = inside::model();
+      axis_t& seen = starting.axis;
+      seen = {1 << 20, 0, 0, 0, 0, AXIS_PERIODS};
+      const double mean = real(m.yd_q30, 30) / 2 + real(m.yq_q30, 30) / 2;
+      const double half = (real(m.yd_q30, 30) - real(m.yq_q30, 30)) / 2;
+      seen.mirror_q16 = raw((saliency * mean - half) * 4096.0, 16);
+      inside::schedule().exclusive = true;
+      starting.tick = 10;
+      const start_phase_t next = axis_phase.step(&drive);
+      const bool at_once = asked && saliency < 1.0 / 16.0;
+      EXPECT_EQ(next, at_once ? START_GOES_ON : START_SETTLE) << asked << saliency;
+      EXPECT_EQ(inside::state(), at_once ? DRIVE_COMMISSION : DRIVE_START) << asked << saliency;
+      EXPECT_EQ(inside::start_found().uniform, saliency < 1.0 / 16.0);
+      if (!at_once) continue;
+      periods(3);
+      EXPECT_TRUE(commissioning.uniform);
+      EXPECT_TRUE(inside::loop_is_closed());
+    }
+  }
+}
+
 TEST_F(Commissioning, AStartIsStillAStart) {
   begin();
   drive_command_stop();
@@ -209,13 +241,14 @@ TEST_F(Commissioning, BeginsWithNothingOfTheLastOne) {
   use_parameters();
   make_ready();
   commissioning_t& c = commissioning;
-  c.predicting = c.solve_motion = c.evaluate = true;
+  c.predicting = c.solve_motion = c.evaluate = c.uniform = true;
   c.phase = COMMISSIONING_SPIN;
   c.tick = 99;
   drive_command_commission();
   period();
   EXPECT_EQ(inside::state(), DRIVE_START);
   EXPECT_FALSE(inside::flags().spins || inside::flags().frozen || c.predicting || c.solve_motion || c.evaluate);
+  EXPECT_FALSE(c.uniform);
   EXPECT_EQ(inside::flags().behind, DRIVE_COMMISSION);
   EXPECT_EQ(c.phase, COMMISSIONING_IDLE);
   EXPECT_EQ(c.tick, 0);

@@ -169,3 +169,30 @@ def test_the_drop_within_twenty_millivolts(found):
 def test_the_friction_is_of_the_right_size(found):
     # What the harmonics of the EMF brake and a few milliamperes of the current are in it: no goal of its own.
     assert found["friction"] == pytest.approx(0.003, rel=0.12)
+
+
+@pytest.mark.parametrize("motor", ["B-SPM", "hub_36v"])
+def test_a_machine_without_saliency_is_found_as_a_whole(tmp_path, motor):
+    """Its profile makes it 10 % more resistance, 3 % less inductance and flux, 20 % more inertia than the nameplate."""
+    native = pytest.importorskip("stillspin._core", reason="the native module is not built")
+    own = "bench" if motor == "B-SPM" else motor
+    schema, known = core.plant_schema(native), core.parameters(native)
+    chosen = profile.load(own, schema, known, motor)
+    out = tmp_path / "params.toml"
+    command = [sys.executable, "-m", "stillspin", "commission", "--motor", motor, "--profile", own]
+    command += ["--set", "solver.method=rk4", "--set", "start_method=0", "--out", str(out)]
+    result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
+    assert result.returncode == 0, result.stderr
+    assert "10 of 10 values found" in result.stdout
+    assert "at rest its angle is not known" in result.stdout
+    found = tomllib.loads(out.read_text(encoding="utf-8"))["parameters"]
+    told, error = chosen.parameters, chosen.plant["parameter_error"]
+    assert found["start_method"] == 1.0
+    assert found["inductance_d"] == found["inductance_q"]
+    middle = 2.0 / (1.0 / told["inductance_d"] + 1.0 / told["inductance_q"])
+    assert found["inductance_d"] == pytest.approx(middle * (1.0 + error["inductance_d"]), rel=0.03)
+    assert found["stator_resistance"] == pytest.approx(
+        told["stator_resistance"] * (1.0 + error["resistance"]), rel=0.05
+    )
+    assert found["magnet_flux"] == pytest.approx(told["magnet_flux"] * (1.0 + error["magnet_flux"]), rel=0.03)
+    assert found["inertia"] == pytest.approx(told["inertia"] * (1.0 + error["inertia"]), rel=0.05)

@@ -150,8 +150,8 @@ def test_the_vector_follows_from_the_nameplate():
     assert found["if_current"] == pytest.approx(0.5 * 0.02 / 1.05e-3, abs=0.01)
     assert found["if_speed"] == pytest.approx(4.0 / 0.02 / 5.0 * 30.0 / np.pi, abs=1.0)
     assert found["if_acceleration"] == pytest.approx(found["if_speed"] / 0.6, abs=1.0)
-    assert found["spin_speed"] == pytest.approx(3.0 * found["if_speed"], abs=2.0)
-    assert open_loop.following({**told, "inductance_q": 1.1}, 50.0) == {}
+    assert found["spin_speed"] == pytest.approx(0.145 * 50.0 / 0.02 / 5.0 * 30.0 / np.pi, abs=2.0)
+    assert open_loop.following({**told, "inductance_q": 1.15}, 50.0) == {}
     assert found["speed_ramp"] == pytest.approx(0.1 * 1.5 * 5.0 * 0.02 * 9.52 / 1e-3 * 30.0 / np.pi, abs=1.0)
     heavy = open_loop.following({**told, "inertia": 0.03}, 50.0)
     assert heavy["if_acceleration"] == heavy["speed_ramp"] == 45.0

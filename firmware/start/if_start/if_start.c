@@ -63,7 +63,9 @@ static void take_over(drive_t* d) {
   c->reference_q20.q = own_q20.q;
   speed_controller_preset(&c->speed, 0);
   current_controller_reset(&c->current);
-  drive_enter(d, DRIVE_RUN);
+  const drive_state_t behind = d->flags.behind;
+  drive_enter(d, behind);
+  d->flags.spins = behind == DRIVE_COMMISSION;
 }
 
 static start_phase_t step_if_ramp(drive_t* d) {

@@ -9,14 +9,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-SALIENCY_LEAST = 0.04
-"""(Lq - Ld)/(Lq + Ld) below which a start does not look for the axis."""
+SALIENCY_LEAST = 1.0 / 15.0
+"""(Lq - Ld)/(Lq + Ld) below which nothing shows the axis at rest, as commissioning has it: Lq an eighth above Ld."""
 _EMF_SHARE = 0.08  # of the link's voltage, at the vector's last speed
+_SPIN_SHARE = 0.145  # the same in the spin: the pulses alternate up to some 0.17
 _FLUX_SHARE = 0.5  # L I of the vector, of the magnet's flux: beyond that it is hardly damped (control/if_start.h)
 _TORQUE_SHARE = 0.1  # of the vector's torque, for its own acceleration and that behind it
 _RISE_TIME = 0.6  # s, to the last speed
 _SPEEDS = (10.0, 6000.0)  # rpm, that the parameter takes
-_SPIN = (300.0, 20000.0)
+_SPIN = (30.0, 20000.0)
 _RAMP_MOST = 3000.0  # rpm/s, the drive's default
 
 
@@ -48,7 +49,7 @@ def following(told: Mapping[str, float], volts: float) -> dict[str, float]:
     if told.get("inertia"):
         ramp = min(ramp, _TORQUE_SHARE * _rpm(torque / told["inertia"]))
     slope = min(speed / _RISE_TIME, ramp)
-    spin = min(max(3.0 * speed, _SPIN[0]), _SPIN[1])
+    spin = min(max(_SPIN_SHARE / _EMF_SHARE * speed, _SPIN[0]), _SPIN[1])
     return {
         "start_method": 1.0,
         "if_current": round(current, 2),

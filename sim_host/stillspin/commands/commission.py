@@ -45,6 +45,11 @@ def commission(
     found = len(result.values) - len(result.refused)
     print(f"{counted(found, 'value', len(result.values))} found in {result.duration:.1f} s of the drive's time")
     print(f"they are in {out} and in no drive: 'stillspin params load {out} --save' puts them into one")
+    if result.told.get("start_method") == 1.0:
+        print(
+            "the motor shows next to no saliency: at rest its angle is not known and no load is held; a current vector "
+            "turns it at the start (if_current, if_speed), and below if_speed it is not to be run"
+        )
     for value in result.refused:
         print(f"stillspin: {value.name} keeps its value: {value.words}", file=sys.stderr)
     if result.refused:
