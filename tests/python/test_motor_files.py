@@ -268,7 +268,7 @@ def test_a_new_motor_is_written_from_a_nameplate_and_works(native, tmp_path):
     path = tmp_path / "new.toml"
     made = told("new", path, *(part for pair in ANSWERS.items() for part in pair))
     assert made.exit_code == 0, made.stderr
-    assert "avv_bandwidth_long 200 rad/s" in made.stdout
+    assert "drop_band 0.2 A" in made.stdout
     assert not any(words in made.stdout for words in LEFT)  # these follow, and are what they are by default
     machine = tomllib.loads(path.read_text(encoding="utf-8"))["machine"]
     assert machine["magnet_flux"] == pytest.approx(0.16, rel=1e-3)

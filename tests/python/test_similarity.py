@@ -138,6 +138,13 @@ def test_the_polarity_test_turns_a_heavy_shaft_by_more_current_and_a_light_one_b
     assert light.turn(followed(native, inertia=light.inertia)["polarity_current"]) < 0.175
 
 
+def test_the_estimator_of_a_start_is_faster_where_the_shaft_is(native):
+    for name in ("avv_bandwidth_long", "avv_bandwidth_short"):
+        assert times(native, name, inertia=0.00455 / 4) == 2.0
+        assert times(native, name, inertia=0.00455 * 4) == 1.0
+        assert times(native, name, inertia=0.00455 / 4, inductance_q=4.9e-3) == 1.0
+
+
 def test_the_current_loop_is_faster_than_what_swings_by_itself(native):
     light = dataclasses.replace(similarity.REFERENCE, inertia=0.00455 / 50.0)
     assert followed(native, inertia=light.inertia)["current_bandwidth"] == pytest.approx(2.1 * light.swing, abs=1.0)

@@ -207,6 +207,15 @@ def _speed_alpha(asked: _Asked, name: str) -> float:
     return share / (1.0 - share) / step(asked.size) ** 2
 
 
+def _by_agility(asked: _Asked, name: str) -> float:
+    """As much faster as a current off the q-axis moves the shaft sooner; the default where there is no saliency."""
+    size, default = asked.size, asked.default(name)
+    if open_loop.share(size.inductance_d, size.inductance_q) < open_loop.SALIENCY_LEAST:
+        return default
+    ratio = size.pole_pairs * size.acceleration / (REFERENCE.pole_pairs * REFERENCE.acceleration)
+    return default * max(_power(math.sqrt(ratio)), 1.0)
+
+
 def _current_bandwidth(asked: _Asked, name: str) -> float:
     most = _LOOP_END / (3.0 + asked.told.get("current_divider", 1.0))
     return max(asked.default(name), min(math.ceil(_SWING * asked.size.swing), most))
@@ -225,6 +234,7 @@ RULES: dict[str, _Law] = {
     **dict.fromkeys(("start_current", "if_current"), _by_current),
     "polarity_current": _polarity_current,
     **dict.fromkeys(("observer_load_rate", "observer_load_quiet", "observer_load_step"), _load),
+    **dict.fromkeys(("avv_bandwidth_long", "avv_bandwidth_short"), _by_agility),
     "speed_ramp": _ramp,
     "if_acceleration": _if_ramp,
     "speed_alpha": _speed_alpha,
