@@ -17,6 +17,8 @@ enum {
 #define DROP_CHANGE_MAX_Q16 98304L  // 1.5 V
 #define EDGE_CHANGE_MAX_Q16 65536L  // 1 us
 #define TURN_MAX_BAM 357913941L     // 30 degrees: beyond that next to no saliency is left
+#define SALIENCY_SHARE 4            // nor with less than a quarter of it
+#define SALIENT_LEAST 2u            // levels: fewer may as well be a wrong order of the phases
 #define CURRENT_SHARE 10            // a level's current is met within a tenth
 
 static commissioning_verdict_t worst(commissioning_verdict_t a, commissioning_verdict_t b) {
@@ -32,9 +34,9 @@ static commissioning_verdict_t agree(int32_t a, int32_t b, int32_t parts) {
   return (qc_abs_sat(qc_sub_sat(a, b)) > qc_abs_sat(a) / parts) ? VERDICT_INCONSISTENT : VERDICT_USED;
 }
 
-// What the functions below offer, each once: three of the staircase, three unsaturated, the map and that it is known,
-// three of the spin.
-#if 3u + 3u + 1u + 3u * MAP_LEVELS + 1u + 3u > COMMISSIONING_RESULTS
+// What the functions below offer, each once: three of the staircase, three unsaturated, the map, that it is known and
+// up to where the saliency is there, three of the spin.
+#if 3u + 3u + 1u + 3u * MAP_LEVELS + 2u + 3u > COMMISSIONING_RESULTS
 #error "a report has no room for its results"
 #endif
 
@@ -118,32 +120,62 @@ static void judge_level(const map_values_t* v, const map_values_t* zero, uint16_
   offer(r, (uint16_t)(ID_ldq_1 + level), v->ldq_q20, all);
 }
 
-// The levels are shares of the map's last current: with another one than before, all of them or none.
-static void keep_map_together(commissioning_report_t* r, uint16_t first) {
-  const bool complete = all_used(r, first);
-  if (!complete && r->list[first].value != r->list[first].before) refuse_all(r, first);
-  offer(r, ID_map_known, 1, complete ? VERDICT_USED : VERDICT_DEPENDS);
+// The levels are shares of the map's last current: with another one than before, all of them or none; of a map that
+// ends early some of the points rest on two levels. A saliency that stays says nothing of the current: 0.
+static void keep_map_together(commissioning_report_t* r, uint16_t first, bool ends) {
+  const commissioning_result_t* const last = &r->list[first];
+  const commissioning_verdict_t all = all_used(r, first) ? VERDICT_USED : VERDICT_DEPENDS;
+  if (all != VERDICT_USED && (ends || last->value != last->before)) refuse_all(r, first);
+  offer(r, ID_map_known, 1, all);
+  offer(r, ID_saliency_current, ends ? last->value : 0, all);
+}
+
+static bool has_lost_saliency(const map_values_t* v, const map_values_t* zero) {
+  const int32_t least_q20 = qc_sub_sat(zero->lqq_q20, zero->ldd_q20) / SALIENCY_SHARE;
+  return v->valid && (qc_sub_sat(v->lqq_q20, v->ldd_q20) < least_q20 || qc_abs_sat(v->turn_bam) > TURN_MAX_BAM);
+}
+
+// The map's points up to the last level with saliency, between the measured ones on straight lines, as the flux takes
+// the inductances (machine_map.c). From the last one down: a point lies below the levels that it is made of.
+static void end_map(commissioning_result_t* map, uint16_t salient) {
+  conclude(map, level_q20((uint16_t)(salient - 1u)), VERDICT_USED);
+  for (uint16_t point = MAP_LEVELS; point > 0u; point--) {
+    const uint16_t place = (uint16_t)(point * salient);
+    const int32_t share_q24 = (int32_t)(place % MAP_LEVELS) * (16777216L / (int32_t)MAP_LEVELS);
+    const commissioning_result_t* const above = &map[place / MAP_LEVELS * 3u];
+    for (uint16_t column = 1; column <= 3u; column++) {
+      const int32_t none = (column < 3u) ? 100L * 65536L : 0;
+      const int32_t from = (place < MAP_LEVELS) ? none : map[place / MAP_LEVELS * 3u - 3u + column].value;
+      commissioning_result_t* const out = &map[3u * (point - 1u) + column];
+      out->value = map_along(from, above[column].value, share_q24);
+      if (point > salient) out->verdict = VERDICT_USED;
+    }
+  }
 }
 
 static void judge_map(const commissioning_t* c, const map_values_t* zero, commissioning_verdict_t unsaturated,
                       commissioning_report_t* r) {
   const uint16_t first = r->count;
   offer(r, ID_map_current, parameters.current_limit, VERDICT_USED);
-  int32_t ldq_q20[MAP_LEVELS];
+  uint16_t salient = 0;
   map_values_t below = *zero;
   for (uint16_t k = 0; k < MAP_LEVELS; k++) {
     const map_values_t measured = map_solve(c->map.group[k], &c->model);
     map_values_t v = measured;
     map_refer(&v, &below, level_q20(k));
     judge_level(&v, zero, k, unsaturated, r);
-    ldq_q20[k] = v.ldq_q20;
+    if (!has_lost_saliency(&v, zero)) salient = (uint16_t)(k + 1u);
     below = measured;
   }
+  const bool ends = salient >= SALIENT_LEAST && salient < MAP_LEVELS;
+  if (ends) end_map(&r->list[first], salient);
+  int32_t ldq_q20[MAP_LEVELS];
+  for (uint16_t k = 0; k < MAP_LEVELS; k++) ldq_q20[k] = r->list[first + 3u * (k + 1u)].value;
   const bool smooth = map_smooth(ldq_q20, qc_sub_sat(zero->lqq_q20, zero->ldd_q20));
   for (uint16_t k = 0; k < MAP_LEVELS; k++) {
     conclude(&r->list[first + 3u * (k + 1u)], ldq_q20[k], smooth ? VERDICT_USED : VERDICT_SPREAD);
   }
-  keep_map_together(r, first);
+  keep_map_together(r, first, ends);
 }
 
 void commissioning_solve_motion(commissioning_t* c) {

@@ -83,8 +83,7 @@ static void invert(map_values_t* v, int32_t mean_q30, int32_t half_q30) {
   v->ldq_q20 = -qc_mul(half, twice.sin_q30, 30);
 }
 
-// From `from` towards `to` by a share.
-static int32_t along(int32_t from, int32_t to, int32_t share_q24) {
+int32_t map_along(int32_t from, int32_t to, int32_t share_q24) {
   return qc_add_sat(from, qc_mul_sat(qc_sub_sat(to, from), share_q24, 24));
 }
 
@@ -92,9 +91,9 @@ void map_refer(map_values_t* v, const map_values_t* below, int32_t current_q20) 
   if (v->current_q20 <= below->current_q20) return;
   const int32_t between_q20 = qc_sub_sat(v->current_q20, below->current_q20);
   const int32_t share_q24 = q_div(qc_sub_sat(current_q20, below->current_q20), between_q20, 24);
-  v->ldd_q20 = along(below->ldd_q20, v->ldd_q20, share_q24);
-  v->lqq_q20 = along(below->lqq_q20, v->lqq_q20, share_q24);
-  v->ldq_q20 = along(below->ldq_q20, v->ldq_q20, share_q24);
+  v->ldd_q20 = map_along(below->ldd_q20, v->ldd_q20, share_q24);
+  v->lqq_q20 = map_along(below->lqq_q20, v->lqq_q20, share_q24);
+  v->ldq_q20 = map_along(below->ldq_q20, v->ldq_q20, share_q24);
 }
 
 map_values_t unsaturated_solve(const tensor_sums_t* s, const machine_model_t* m) {
@@ -188,7 +187,7 @@ static int32_t inertia_q24(const spin_ramp_t* r, const steady_t* low, const stea
                            int32_t torque_constant_q24, int32_t pole_pairs) {
   const int32_t mean_speed = fit_ratio(r->speed, r->periods, 0);
   const int32_t place_q24 = fit_ratio((int64_t)mean_speed - low->speed, (int64_t)high->speed - low->speed, 24);
-  const int32_t friction_q20 = along(low->current_q20, high->current_q20, place_q24);
+  const int32_t friction_q20 = map_along(low->current_q20, high->current_q20, place_q24);
   const int32_t net_q20 = qc_sub_sat(fit_ratio(r->current_q, r->periods, 0), friction_q20);
   const int32_t torque_q24 = qc_mul_sat(torque_constant_q24, net_q20, 20);
   const int32_t impulse_q10 = qc_mul_sat(torque_q24, r->periods, 14);  // N m periods

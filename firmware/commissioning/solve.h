@@ -45,6 +45,9 @@ map_values_t map_solve(const map_group_t group[MAP_GROUPS], const machine_model_
 /// or within 0.1 degrees of the axis: 1/512 of the saliency, Lq - Ld, mH Q20.
 bool map_smooth(int32_t ldq_q20[MAP_LEVELS], int32_t saliency_q20);
 
+/// From one value towards another by a share.
+int32_t map_along(int32_t from, int32_t to, int32_t share_q24);
+
 /// Moves a level's inductances to the current that was meant, along the line from the level below.
 void map_refer(map_values_t* v, const map_values_t* below, int32_t current_q20);
 

@@ -10,14 +10,15 @@
 #include "hal/hal_adc.h"
 #include "hal/qmath/qcall.h"
 
-#define K0_MAX_Q20 1048576000L       // lambda/L of 1000 A
-#define CRAWL_MAX_RPM_Q16 655360L    // where cogging is learnt
-#define HOLD_BELOW_RPM_Q16 1310720L  // 20 rpm
-#define COGGING_MAX_Q20 1048576L     // 1 N m
-#define RELUCTANCE_END_Q16 1671168L  // 25.5 N m/A with the full scale, half of the largest current
-#define EDGE_BAND_Q20 524288L        // half an ampere of ripple may be predicted wrong
-#define RAD_PER_RPM_Q47 1473799531L  // 2 pi / 60 * 100 us
-#define MILLIHENRY_Q30 1099511628L   // mH (Q20) to H (Q30): 1.024
+#define K0_MAX_Q20 1048576000L        // lambda/L of 1000 A
+#define CRAWL_MAX_RPM_Q16 655360L     // where cogging is learnt
+#define HOLD_BELOW_RPM_Q16 1310720L   // 20 rpm
+#define COGGING_MAX_Q20 1048576L      // 1 N m
+#define RELUCTANCE_END_Q16 1671168L   // 25.5 N m/A with the full scale, half of the largest current
+#define EDGE_BAND_Q20 524288L         // half an ampere of ripple may be predicted wrong
+#define RAD_PER_RPM_Q47 1473799531L   // 2 pi / 60 * 100 us
+#define TURNS_Q32_PER_RAD 683565276L  // 2^32 / 2 pi
+#define MILLIHENRY_Q30 1099511628L    // mH (Q20) to H (Q30): 1.024
 
 // Ticks of 10 ns from a time in us, Q16.
 static int16_t ticks(int32_t time_q16) { return (int16_t)qc_mul(time_q16, 100, 16); }
@@ -130,12 +131,17 @@ static bool load_control(drive_config_t* c) {
   // B (Q24, N m s) * rpm per bpp (Q40) * 2 pi / 60.
   c->friction_per_bpp_q40 = qc_mul_sat(qc_mul_sat(p->friction, c->rpm_per_bpp_q40, 24), 112442659L, 30);
   c->ramp_step_bpp = qc_mul_sat(p->speed_ramp, c->bpp_per_rpm_q8, 16) / 1000;
+  // A third of the saliency (Lq - Ld)/(Lq + Ld), over the flux.
+  const int32_t third_q30 = q_div((p->inductance_q - p->inductance_d) / 3, p->inductance_q + p->inductance_d, 30);
+  c->salient_bpp_q4 = qc_mul_sat(q_div(third_q30, c->nameplate.emf_q16, 20), TURNS_Q32_PER_RAD, 30);
+  c->salient_q20 = p->saliency_current;
+  if (p->saliency_current == 0 || (drive_source_wanted()->traits & SOURCE_MEASURES) != 0u) c->salient_q20 = INT32_MAX;
   c->hold_gain_q30 = q_div(p->position_hold, c->nameplate.periods_per_second, 22);
   c->hold_below_bpp = qc_mul_sat(HOLD_BELOW_RPM_Q16, c->bpp_per_rpm_q8, 24);
   const current_design_t current = {p->current_bandwidth, DRIVE_PERIOD_US, p->current_divider,
                                     (current_corner_t)p->current_corner};
   mtpa_design(&c->mtpa, &c->nameplate);
-  static speed_controller_t trial;  // too large for the stack; the background level alone comes here
+  speed_controller_t trial;
   return speed_controller_init(&trial, &c->speed, &c->nameplate) &&
          current_controller_design(&c->current, &c->nameplate, &current);
 }

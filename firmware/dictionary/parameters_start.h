@@ -26,6 +26,7 @@ PARAMETER(120, ldq_2, MH, 20, 4, -1000000, 1000000, 0, STOPPED, "mutual inductan
 PARAMETER(121, ldq_3, MH, 20, 4, -1000000, 1000000, 0, STOPPED, "mutual inductance at 3/4 of map_current")
 PARAMETER(122, ldq_4, MH, 20, 4, -1000000, 1000000, 0, STOPPED, "mutual inductance at map_current")
 PARAMETER(123, map_known, NONE, 0, 0, 0, 1, 0, STOPPED, "1: the inductance map is the machine's, even where it is flat")
+PARAMETER(124, saliency_current, A, 20, 2, 0, 10000, 0, STOPPED, "current up to which the saliency is there; 0: all")
 
 // Commissioning
 PARAMETER(130, sensor_mismatch, PERCENT, 16, 3, -5000, 5000, 0, STOPPED,

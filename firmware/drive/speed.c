@@ -10,6 +10,7 @@
 #include "firmware/mode/mode.h"
 #include "hal/qmath/qcall.h"
 
+#define FASTEST_EVEN_BPP 536870912L        // 1250 Hz: beyond every speed
 #define PERCENT_OF_SQRT3_INV_Q30 6199251L  // of the largest vector, per volt of the DC link
 
 static int32_t voltage_limit(const drive_t* d) {
@@ -58,8 +59,21 @@ static int32_t load_current(const drive_t* d) {
   return qc_over(torque_q20, d->control.per_torque_constant, 24);
 }
 
+// A rotor that is found by its saliency is lost with it: the current stays below saliency_current until the EMF tells
+// as much. Per radian a window's slope changes by y 2 s 2/3 U for a saliency s = (Lq - Ld)/(Lq + Ld) at a link U, and
+// by y E for an EMF E. At saliency_current there is at least a quarter of s left, and both weigh the same where E is
+// U s / 3. From that speed to twice of it the limit rises evenly, so that no step of it makes the current chatter.
+static int32_t usable_current(const drive_t* d) {
+  const int32_t limit_q20 = d->control.current_limit_q20;
+  const int32_t more_q20 = limit_q20 - d->config.salient_q20;
+  if (more_q20 <= 0) return limit_q20;
+  const int32_t even_bpp = q_clamp(qc_mul_sat(d->samples.link_q16, d->config.salient_bpp_q4, 20), 1, FASTEST_EVEN_BPP);
+  const int32_t beyond_bpp = qc_abs_sat(d->position.selected.speed_bpp) - even_bpp;
+  return limit_q20 - qc_mul(more_q20, q_div(q_clamp(even_bpp - beyond_bpp, 0, even_bpp), even_bpp, 30), 30);
+}
+
 int32_t drive_current_headroom(const drive_t* d) {
-  const int32_t limit = d->control.current_limit_q20;
+  const int32_t limit = usable_current(d);
   const int64_t room = (int64_t)limit * limit - (int64_t)d->control.reference_q20.d * d->control.reference_q20.d;
   return (room > 0) ? q_min((int32_t)q_sqrt64((uint64_t)room), limit) : 0;
 }

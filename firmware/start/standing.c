@@ -91,10 +91,12 @@ static start_phase_t starve(drive_t* d) {
   return hold_back(d);
 }
 
-// Twice as much with each try; after one that the voltage was too low for, half of that.
+// Twice as much with each try, while there is the saliency that the motion is read from; after one that the voltage was
+// too low for, half of that.
 static int32_t motion_current(const drive_start_t* s) {
   if (s->starved && s->motion.current_q20 > 0) return s->motion.current_q20 / 2;
-  return q_min(qc_shl_sat(drive.config.values.polarity_current, s->tries), drive.config.values.current_limit);
+  const int32_t most_q20 = q_min(drive.config.salient_q20, drive.config.values.current_limit);
+  return q_min(qc_shl_sat(drive.config.values.polarity_current, s->tries), most_q20);
 }
 
 static void begin_motion(drive_t* d) {

@@ -137,11 +137,11 @@ TEST_F(CommissioningStairs, ResultsAreThereWhenItHasEnded) {
   EXPECT_EQ(drive_commissioning_count(), 0);
   commissioning_service(&drive);
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_PARTLY);
-  ASSERT_EQ(drive_commissioning_count(), 23);
-  EXPECT_NE(drive_commissioning_result(22).id, 0);
-  EXPECT_EQ(drive_commissioning_result(23).id, 0);
+  ASSERT_EQ(drive_commissioning_count(), 24);
+  EXPECT_NE(drive_commissioning_result(23).id, 0);
+  EXPECT_EQ(drive_commissioning_result(24).id, 0);
   c.outcome = COMMISSIONING_DONE;
-  EXPECT_EQ(drive_commissioning_count(), 23);
+  EXPECT_EQ(drive_commissioning_count(), 24);
   c.outcome = COMMISSIONING_ABORTED;
   EXPECT_EQ(drive_commissioning_result(0).id, 0);
 }

@@ -183,7 +183,7 @@ TEST_F(Commissioning, SumsThatAreEmptyChangeNothing) {
   commissioning.model = inside::config().nameplate;
   commissioning_judge(&commissioning, &report);
   EXPECT_EQ(commissioning_use(&report), COMMISSIONING_PARTLY);
-  EXPECT_EQ(report.count, 23);
+  EXPECT_EQ(report.count, 24);
   for (int k = 0; k < report.count; ++k) {
     const commissioning_result_t& r = report.list[k];
     EXPECT_TRUE(r.verdict != VERDICT_USED || r.value == r.before) << r.id;

@@ -146,6 +146,46 @@ TEST_F(SpeedTask, TheTorqueCurrentHasTheRest) {
   }
 }
 
+// Up to the EMF that tells the angle as well as a quarter of the saliency, a third of its share of the link, the
+// current is that which leaves the saliency; at twice that it is the whole limit's again.
+TEST_F(SpeedTask, ARotorThatIsFoundByItsSaliencyKeepsIt) {
+  const double l_d = real(parameters.inductance_d, 20), l_q = real(parameters.inductance_q, 20);
+  const double even = kLink / 3.0 * (l_q - l_d) / (l_q + l_d) / real(parameters.magnet_flux, 28);  // rad/s
+  const auto room = [&](double salient, double speed_then, int source) {
+    parameters.saliency_current = raw(salient, 20);
+    parameters.position_source = source;
+    EXPECT_TRUE(drive_config_load(&inside::config()));
+    inside::current_limit_q20() = raw(10.0, 20);
+    use_source(source);
+    speed(speed_then);
+    return real(drive_current_headroom(&drive), 20);
+  };
+  EXPECT_NEAR(room(0.0, 0.0, POSITION_OBSERVER), 10.0, 1e-5);
+  EXPECT_NEAR(room(12.0, 0.0, POSITION_OBSERVER), 10.0, 1e-5);
+  EXPECT_NEAR(room(6.0, 0.0, POSITION_OBSERVER), 6.0, 1e-5);
+  EXPECT_NEAR(room(6.0, -0.99 * even, POSITION_OBSERVER), 6.0, 1e-5);
+  EXPECT_NEAR(room(6.0, 1.5 * even, POSITION_OBSERVER), 8.0, 0.02);
+  EXPECT_NEAR(room(6.0, -1.25 * even, POSITION_OBSERVER), 7.0, 0.02);
+  EXPECT_NEAR(room(6.0, 2.01 * even, POSITION_OBSERVER), 10.0, 1e-5);
+  EXPECT_NEAR(room(6.0, 0.0, POSITION_OBSERVER), 6.0, 1e-5);
+  inside::speed_ramp().value = inside::target_bpp() = bpp(500.0);
+  inside::current_limit_q20() = raw(10.0, 20);
+  for (int n = 0; n < 5; ++n) part(TASK_SPEED);
+  EXPECT_NEAR(iq(), 6.0, 1e-4);
+  EXPECT_NE(inside::limits() & LIMIT_CURRENT, 0);
+}
+
+// A measured angle needs no saliency.
+TEST_F(SpeedTask, AnEncoderBearsAnyCurrent) {
+  NEEDS("sources/encoder");
+  parameters.saliency_current = raw(6.0, 20);
+  parameters.position_source = POSITION_ENCODER;
+  ASSERT_TRUE(drive_config_load(&inside::config()));
+  inside::current_limit_q20() = raw(10.0, 20);
+  use_source(POSITION_ENCODER);
+  EXPECT_NEAR(real(drive_current_headroom(&drive), 20), 10.0, 1e-5);
+}
+
 // Braking is limited between link_regulation and two thirds of the way to the fault, and near standstill, where the EMF
 // is less than the resistance takes, not at all.
 TEST_F(SpeedTask, BrakingIsLimitedByTheLink) {

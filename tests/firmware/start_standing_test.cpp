@@ -4,6 +4,7 @@
 #include "tests/firmware/start_standing_test.hpp"
 
 extern "C" {
+#include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/inertia.h"
@@ -277,6 +278,24 @@ TEST_F(StartStanding, WhatMotionLeavesOpenIsAFaultAfterThreeTries) {
   EXPECT_EQ(inside::fault(), FAULT_POLARITY);
   EXPECT_EQ(inside::start_found().sigma_q8, start().motion.sigma_q8);
   EXPECT_FALSE(board.gates_on);
+}
+
+// The motion is seen by the saliency, which a larger current would take away.
+TEST_F(StartStanding, MotionIsLookedForWithACurrentThatLeavesTheSaliency) {
+  for (const auto& [salient, most] : {std::pair{6.0, 6.0}, {20.0, 14.0}}) {
+    SetUp();
+    parameters.polarity_current = raw(4.0, 20);
+    parameters.current_limit = raw(14.0, 20);
+    parameters.saliency_current = raw(salient, 20);
+    ASSERT_TRUE(drive_config_load(&inside::config()));
+    inside::config().saturation = {0, 0};
+    at(START_SETTLE, 100);
+    step();
+    for (const double amps : {4.0, std::min(8.0, most), most}) {
+      EXPECT_EQ(start().motion.current_q20, raw(amps, 20));
+      motion_says(0.1);
+    }
+  }
 }
 
 TEST_F(StartStanding, MotionTellsTheHalfTurn) {

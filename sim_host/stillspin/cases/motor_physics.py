@@ -8,6 +8,7 @@ from stillspin.cases import open_loop
 from stillspin.cases.motor_told import PERIOD, Described, Finding
 
 _TURN_LEAST = 12.0  # control interrupts per electrical turn
+_MAP_LEVELS, _SALIENT_LEAST = 4, 2  # currents at which the drive measures, and how many must have a saliency
 
 
 def saliency(motor: Described) -> Finding:
@@ -23,12 +24,18 @@ def saliency(motor: Described) -> Finding:
     words = f"(Lq − Ld)/(Lq + Ld) is {share:.1%} without current"
     if not motor.plant("machine", "saturation"):
         return Finding("start at rest", True, words)
-    # The plant's Lqq is Lq / (1 + (iq / 2 rated)^2).
-    end = 2.0 * motor.plant("machine", "rated_peak_current") * math.sqrt(q / d - 1.0)
-    if end < limit:
-        words += f", and gone from {end:.3g} A on; current_limit is {limit:.3g} A"
-        return Finding("start at rest", False, f"{words}: choose current_limit below {0.9 * end:.3g} A")
-    return Finding("start at rest", True, f"{words}, and there up to {end:.3g} A; current_limit is {limit:.3g} A")
+    # The plant's Lqq is Lq / (1 + (iq / 2 rated)^2); a quarter of the difference is what the drive needs.
+    end = 2.0 * motor.plant("machine", "rated_peak_current") * math.sqrt(q / (d + (q - d) / 4.0) - 1.0)
+    words += f", and a quarter of that is there up to {end:.3g} A; current_limit is {limit:.3g} A"
+    if end >= limit:
+        return Finding("start at rest", True, words)
+    levels = math.floor(_MAP_LEVELS * end / limit)
+    if levels < _SALIENT_LEAST:
+        most = _MAP_LEVELS / _SALIENT_LEAST * end
+        return Finding("start at rest", False, f"{words}: choose current_limit below {0.95 * most:.3g} A")
+    salient = levels / _MAP_LEVELS * limit
+    words += f": commissioned, the drive gives no more than saliency_current, {salient:.3g} A, while it is slow"
+    return Finding("start at rest", True, words)
 
 
 def _turned(motor: Described, share: float) -> Finding:
