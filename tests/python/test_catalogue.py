@@ -123,9 +123,9 @@ def test_what_the_drive_says_of_each_is_what_is_on_record(native):
 
 
 def test_a_verdict_is_the_first_thing_that_motor_check_finds(native):
-    said = CliRunner().invoke(cli.app, ["motor", "check", "compressor_12a", "--profile", "compressor_12a"])
+    said = CliRunner().invoke(cli.app, ["motor", "check", "inrunner_12v", "--profile", "inrunner_12v"])
     first = next(line for line in said.stdout.splitlines() if line.startswith("WRONG"))
-    verdict = catalogue.verdict("compressor_12a", native)
+    verdict = catalogue.verdict("inrunner_12v", native)
     assert (verdict.word, first) == ("will not work", f"WRONG  {verdict.reason}")
     assert catalogue.verdict("emrax_268", native).word == "refused"
 

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tomllib
 
+import numpy as np
 import pytest
 
 import fake_core
@@ -196,3 +197,36 @@ def test_a_machine_without_saliency_is_found_as_a_whole(tmp_path, motor):
     )
     assert found["magnet_flux"] == pytest.approx(told["magnet_flux"] * (1.0 + error["magnet_flux"]), rel=0.03)
     assert found["inertia"] == pytest.approx(told["inertia"] * (1.0 + error["inertia"]), rel=0.05)
+
+
+def test_a_saliency_that_ends_is_found_and_kept_while_the_shaft_is_slow(tmp_path):
+    """A motor of the catalogue that has 18 % of it without current, and a quarter of that at 8.7 A of its 12 A."""
+    native = pytest.importorskip("stillspin._core", reason="the native module is not built")
+    out, motor = tmp_path / "params.toml", "compressor_12a"
+    command = [sys.executable, "-m", "stillspin", "commission", "--motor", motor, "--profile", motor]
+    command += ["--set", "solver.method=rk4", "--out", str(out)]
+    result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
+    assert result.returncode == 0, result.stdout + result.stderr
+    own = tomllib.loads(out.read_text(encoding="utf-8"))["parameters"]
+    assert own["map_current"] == own["saliency_current"] == pytest.approx(6.0, abs=0.01), "two levels of four"
+    chosen = profile.load(motor, core.plant_schema(native), core.parameters(native), motor)
+    # U (Lq - Ld)/(Lq + Ld) / 3 over the flux; up to twice that speed the limit rises.
+    share = (own["inductance_q"] - own["inductance_d"]) / (own["inductance_q"] + own["inductance_d"])
+    even = 310.0 * share / 3.0 / own["magnet_flux"] / chosen.parameters["pole_pairs"] * 30.0 / np.pi
+    for salient, slow in ((own["saliency_current"], 6.0), (0.0, 12.0)):
+        run = native.run(
+            plant=profile.merged(chosen.plant, {"solver": {"method": "rk4"}}),
+            parameters={**chosen.parameters, **own, "saliency_current": salient, "speed_ramp": 100000.0},
+            commands=[(0.0, "speed_ref_rpm", 3000.0)],
+            load=[],
+            duration=1.0,
+            max_start=5.0,
+            record_every=10,
+            waveform=(0.0, 0.0, 1),
+            seed=1,
+            progress=None,
+        )
+        assert run.completed and not run.faults
+        current, speed = np.abs(run.signals["i_q_ref"]), run.signals["true_speed"]
+        assert current[(speed > 30.0) & (speed < 0.9 * even)].max() == pytest.approx(slow, abs=0.01)
+        assert current[speed > 2.1 * even].max() == pytest.approx(12.0, abs=0.01)

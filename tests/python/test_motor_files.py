@@ -73,6 +73,14 @@ def test_the_virtual_drive_agrees_about_motor_b(native, wanted):
     assert (abs(float(result.signals["true_speed"][-1]) - wanted) < 10.0) == (wanted == 2600.0)
 
 
+def test_a_saliency_that_ends_within_the_current_limit_is_said_with_what_is_left(native, tmp_path):
+    found = findings(native, tmp_path, SALIENT.replace("current_limit = 5.0", "current_limit = 14.0"))
+    assert found["start at rest"].works
+    assert found["start at rest"].words.endswith("no more than saliency_current, 7 A, while it is slow")
+    small = findings(native, tmp_path, SALIENT)
+    assert small["start at rest"].works and "saliency_current" not in small["start at rest"].words
+
+
 def test_a_ripple_that_the_formula_lets_pass_is_found_by_the_start(native, tmp_path):
     """Half the pulse on top of the limit is below the trip, but what the pulses of a start add up to is not."""
     low = SALIENT.replace("11e-3", "0.5e-3").replace("14e-3", "0.8e-3").replace("resistance = 2.5", "resistance = 0.3")
@@ -161,9 +169,9 @@ def test_the_vector_follows_from_the_nameplate():
     ("change", "title", "words"),
     [
         (
-            ("current_limit = 5.0", "current_limit = 14.0"),
+            ("current_limit = 5.0", "current_limit = 20.0"),
             "start at rest",
-            "gone from 11.4 A on; current_limit is 14 A",
+            "a quarter of that is there up to 9.53 A; current_limit is 20 A: choose current_limit below 18.1 A",
         ),
         (("magnet_flux = 0.11", "magnet_flux = 0.9"), "gates off", "link_maximum is 420 V"),
         (("magnet_flux = 0.11", "magnet_flux = 0.9"), "top speed", "speed_limit is 1500 rpm"),
