@@ -16,7 +16,7 @@
 
 #define SVPWM_PERIOD_TICKS PERIOD_TICKS
 #define SVPWM_LEGS 3
-#define SVPWM_WINDOWS 3
+#define SVPWM_WINDOWS 3  // of a period, at most
 
 // Edges stay inside [FIRST, LAST]: room for the shift of the dead-time compensation, and no pulse over the period's
 // end.
@@ -63,8 +63,8 @@ typedef struct {
 } svpwm_window_t;
 
 typedef struct {
-  svpwm_pulses_t pulses;  // edges commanded at the motor
-  svpwm_window_t windows[SVPWM_WINDOWS];
+  svpwm_pulses_t pulses;                      // edges commanded at the motor
+  svpwm_window_t windows[SVPWM_WINDOWS + 1];  // one more while they are found
   uint16_t window_count;
 } svpwm_pattern_t;
 

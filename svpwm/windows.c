@@ -1,28 +1,34 @@
 #include "svpwm/windows.h"
 
-static int32_t span(const svpwm_window_t* w) { return (int32_t)w->end - w->start; }
+#define ZERO_SHIFT 2u
 
-// The shortest goes, where there are too many, and the later ones move up.
-void svpwm_replace_window(svpwm_pattern_t* pattern, const svpwm_window_t* window) {
-  svpwm_window_t* const w = pattern->windows;
-  uint16_t shortest = 0;
-  for (uint16_t k = 1; k < SVPWM_WINDOWS; k++) {
-    if (span(&w[k]) < span(&w[shortest])) shortest = k;
+static int32_t worth(const svpwm_window_t* w) {
+  const int32_t span = (int32_t)w->end - w->start;
+  return svpwm_is_zero_vector(w->state) ? q_shr(span, ZERO_SHIFT) : span;
+}
+
+// One more than are kept: that which tells least goes, and the later ones move up.
+static void leave_one_out(svpwm_window_t w[], uint16_t kept) {
+  uint16_t least = 0;
+  int32_t least_worth = worth(&w[0]);
+  for (uint16_t k = 1; k <= kept; k++) {
+    const int32_t own = worth(&w[k]);
+    if (own >= least_worth) continue;
+    least_worth = own;
+    least = k;
   }
-  if (span(window) < span(&w[shortest])) return;
-  for (uint16_t k = shortest; k + 1u < SVPWM_WINDOWS; k++) w[k] = w[k + 1u];
-  w[SVPWM_WINDOWS - 1] = *window;
+  for (; least < kept; least++) w[least] = w[least + 1u];
 }
 
 void svpwm_take_window(const sampling_config_t* c, svpwm_pattern_t* pattern, int32_t begin, int32_t end,
                        unsigned passed) {
-  const svpwm_window_t window = svpwm_window_between(c, begin, end, (passed ^ (passed >> SVPWM_LEGS)) & 7u);
-  if (window.end < window.start + c->span_min_ticks) return;
-  if (pattern->window_count < SVPWM_WINDOWS) {
-    pattern->windows[pattern->window_count++] = window;
+  svpwm_window_t* const next = &pattern->windows[pattern->window_count];
+  *next = svpwm_window_between(c, begin, end, (passed ^ (passed >> SVPWM_LEGS)) & 7u);
+  if (next->end < next->start + c->span_min_ticks) return;
+  if (pattern->window_count < c->windows) {
+    pattern->window_count++;
   } else {
-    const svpwm_window_t more = window;  // in memory where it has to be, and only there
-    svpwm_replace_window(pattern, &more);
+    leave_one_out(pattern->windows, c->windows);
   }
 }
 

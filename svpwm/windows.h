@@ -1,4 +1,4 @@
-// Finds the intervals of constant switching state in a set of pulses and picks the three that are worth sampling.
+// Finds the intervals of constant switching state in a set of pulses and picks those that are worth sampling.
 
 #ifndef STILLSPIN_SVPWM_WINDOWS_H
 #define STILLSPIN_SVPWM_WINDOWS_H
@@ -12,6 +12,7 @@ typedef struct {
   int16_t burst_ticks;     // length of a burst of conversions
   int16_t span_min_ticks;  // shortest useful time between the two bursts
   int16_t last_tick;       // the last burst must have been triggered by here, so that it is read before the period ends
+  uint16_t windows;        // how many of a period are kept: 2 or 3, SVPWM_WINDOWS
 } sampling_config_t;
 
 /// The window of an interval: of its edges the first comes at begin at the latest, the last at end at the earliest.
@@ -22,9 +23,9 @@ static inline svpwm_window_t svpwm_window_between(const sampling_config_t* c, in
   return w;
 }
 
-/// A walk along the edges that finds the longest windows, in the order of time. Samples keep off edges that are not
-/// certain: a window begins when the edges before it have come at the latest, and ends when those behind it can come at
-/// the earliest.
+/// A walk along the edges that finds the windows that tell most, in the order of time. Samples keep off edges that are
+/// not certain: a window begins when the edges before it have come at the latest, and ends when those behind it can
+/// come at the earliest.
 typedef struct {
   int32_t shortest;      // interval worth a look, ticks
   int32_t begin, ended;  // of the interval, of the last window
@@ -38,12 +39,10 @@ static inline svpwm_finder_t svpwm_finder(const sampling_config_t* c, svpwm_patt
 }
 
 /// An edge that may come before the one that has ended the last window; a window that may be worth it, behind the edges
-/// that have passed.
+/// that have passed. A zero vector shows no saliency, only the EMF: it counts a quarter of its length.
 void svpwm_shorten_window(const sampling_config_t* c, svpwm_pattern_t* pattern, int32_t end);
 void svpwm_take_window(const sampling_config_t* c, svpwm_pattern_t* pattern, int32_t begin, int32_t end,
                        unsigned passed);
-/// One more than there is room for; by itself, as it is rare and the other is not.
-void svpwm_replace_window(svpwm_pattern_t* pattern, const svpwm_window_t* window);
 
 static inline void svpwm_finder_end_interval(svpwm_finder_t* f, const sampling_config_t* c, svpwm_pattern_t* pattern,
                                              int32_t end) {

@@ -99,6 +99,13 @@ static bool load_machine(drive_config_t* c) {
 #error "two windows follow each other faster than the converter is read"
 #endif
 
+// Two neighbouring active vectors are far from the mean voltage, and what the model's inductances lack would stand for
+// an EMF: who asks for them has the rest of the period looked at, too.
+static uint16_t windows_wanted(const parameters_t* p) {
+  const bool neighbours = p->excitation == EXCITATION_EXTENDED || p->excitation == EXCITATION_ALTERNATING;
+  return neighbours ? SVPWM_WINDOWS : drive_source_wanted()->windows;
+}
+
 static bool load_modulation(drive_config_t* c) {
   const parameters_t* const p = &parameters;
   c->modulator.pulse_ticks = ticks(p->pulse_time);
@@ -109,6 +116,7 @@ static bool load_modulation(drive_config_t* c) {
   c->modulator.sampling.burst_ticks = HAL_ADC_BURST_TICKS;
   c->modulator.sampling.span_min_ticks = 300;
   c->modulator.sampling.last_tick = 9640;
+  c->modulator.sampling.windows = windows_wanted(p);
   c->dead_time.turn_on_ticks = ticks(p->dead_time + p->turn_on_delay);
   c->dead_time.turn_off_ticks = ticks(p->turn_off_delay);
   c->dead_time.band_q20 = p->drop_band;

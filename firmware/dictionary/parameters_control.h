@@ -1,9 +1,8 @@
 // Parameters of excitation, position and control: rows of parameter_list.h.
 
 // Excitation
-PARAMETER(
-    40, excitation, NONE, 0, 0, 0, 5, 3, STOPPED,
-    "0 centred, 1 extended, 2 alternating, 3 as the source wants, 4 long zero vector, 5 as 2, cheapest pair above")
+PARAMETER(40, excitation, NONE, 0, 0, 0, 5, 3, STOPPED,
+          "0 centred, 1 extended, 2 alternating, 3 by source, 4 long zero vector, 5 as 2, cheapest pair above")
 PARAMETER(41, pulse_time, US, 16, 2, 1500, 4700, 4200, ALWAYS, "mean pulse of the alternating layout")
 PARAMETER(42, window_minimum, US, 16, 2, 500, 3000, 1800, ALWAYS, "T_min, shortest extended vector")
 PARAMETER(43, window_maximum, US, 16, 2, 500, 4000, 3000, ALWAYS, "longest extended vector, bounds the ripple")

@@ -12,18 +12,25 @@
 
 #define DEADLINE_TICK 9700u  // later than this in the period nothing is written
 
+// Two windows want vectors that have the mean voltage between them (config.c).
+static excitation_t by_windows(const drive_t* d) {
+  return (d->config.modulator.sampling.windows < SVPWM_WINDOWS) ? EXCITATION_CHEAPEST : EXCITATION_ALTERNATING;
+}
+
 static excitation_t excitation(const drive_t* d) {
-  if (d->state == DRIVE_START || d->state == DRIVE_COMMISSION) return EXCITATION_ALTERNATING;
+  if (d->state == DRIVE_START || d->state == DRIVE_COMMISSION) return by_windows(d);
   if (d->config.values.excitation != EXCITATION_BY_SOURCE) return (excitation_t)d->config.values.excitation;
   const position_source_t* const source = d->source;
-  return (source->excitation == NULL) ? EXCITATION_ALTERNATING : source->excitation(d);
+  return (source->excitation == NULL) ? by_windows(d) : source->excitation(d);
 }
 
 // All lower devices on for the whole period, and three windows in it.
 static svpwm_pattern_t short_circuit(const sampling_config_t* c) {
   const svpwm_pattern_t p = {{{-1, -1, -1, -1, -1, -1}, {0, 0, 0, 0, 0, 0}},
-                             {svpwm_window_between(c, 0, 3300, 0), svpwm_window_between(c, 3300, 6600, 0),
-                              svpwm_window_between(c, 6600, SVPWM_PERIOD_TICKS, 0)},
+                             {svpwm_window_between(c, 0, 3300, 0),
+                              svpwm_window_between(c, 3300, 6600, 0),
+                              svpwm_window_between(c, 6600, SVPWM_PERIOD_TICKS, 0),
+                              {0, 0, 0}},
                              SVPWM_WINDOWS};
   return p;
 }

@@ -39,6 +39,7 @@ typedef struct {
   /// electrical turn. NULL: it measures nothing.
   bool (*is_reversed)(const struct drive* d);
   uint16_t traits;
+  uint16_t windows;  // of a period that it looks at, up to SVPWM_WINDOWS
 } position_source_t;
 
 /// By the values of the parameter position_source (editions/).

@@ -105,6 +105,23 @@ void expect_refused() {
   EXPECT_EQ(std::memcmp(&before, &c, sizeof c), 0);
 }
 
+// Two windows do for the observer where it has vectors with the mean voltage between them; the paper wants three.
+TEST_F(DriveConfig, AsManyWindowsAsWhoLooksAtThemWants) {
+  const struct {
+    std::int32_t source, excitation;
+    int windows;
+  } cases[] = {{POSITION_OBSERVER, 0, 2}, {POSITION_OBSERVER, 1, 3}, {POSITION_OBSERVER, 2, 3},
+               {POSITION_OBSERVER, 3, 2}, {POSITION_OBSERVER, 5, 2}, {POSITION_PAPER, 3, 3}};
+  for (const auto& k : cases) {
+    if (position_sources[k.source] == nullptr) continue;
+    parameters.position_source = k.source;
+    parameters.excitation = k.excitation;
+    drive_config_t c = inside::config();
+    EXPECT_TRUE(drive_config_load(&c));
+    EXPECT_EQ(c.modulator.sampling.windows, k.windows) << k.source << k.excitation;
+  }
+}
+
 TEST_F(DriveConfig, InconsistentBlend) {
   set("blend_low", 100.0);
   set("blend_high", 100.0);

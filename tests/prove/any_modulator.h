@@ -19,6 +19,7 @@ static inline void any_modulator(modulator_config_t* c) {
   c->sampling.burst_ticks = any_ticks(50, 500);
   c->sampling.span_min_ticks = any_ticks(100, 2000);
   c->sampling.last_tick = any_ticks(5000, 9800);
+  c->sampling.windows = (uint16_t)any_ticks(1, SVPWM_WINDOWS);
 }
 
 static inline void any_dead_time(dead_time_config_t* c) {

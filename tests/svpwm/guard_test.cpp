@@ -28,6 +28,7 @@ sampling_config_t sampling() {
   c.burst_ticks = 130;
   c.span_min_ticks = 300;
   c.last_tick = 9640;
+  c.windows = SVPWM_WINDOWS;
   return c;
 }
 

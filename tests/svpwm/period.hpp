@@ -187,7 +187,7 @@ inline void expect_mean(const svpwm_pulses_t& p, Vector voltage, double link) {
 inline modulator_config_t default_modulator() {
   modulator_config_t c;
   c.extended = {1800, 3000, 0};
-  c.sampling = {1050, 140, 300, 9640};
+  c.sampling = {1050, 140, 300, 9640, 3};
   c.pulse_ticks = 4200;
   return c;
 }

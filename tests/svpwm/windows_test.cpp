@@ -1,4 +1,4 @@
-// Windows: constant states, room for settling and bursts, the longest three, in the order of time.
+// Windows: constant states, room for settling and bursts, those that tell most, in the order of time.
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@ namespace {
 using namespace stillspin::test;
 
 void expect_rules(const svpwm_pattern_t& p, const sampling_config_t& c) {
-  ASSERT_LE(p.window_count, SVPWM_WINDOWS);
+  ASSERT_LE(p.window_count, c.windows);
   const auto s = states(p.pulses);
   for (int k = 0; k < p.window_count; ++k) {
     const svpwm_window_t& w = p.windows[k];
@@ -34,7 +34,8 @@ TEST(Windows, ObeyTheRulesForRandomPulses) {
   for (int n = 0; n < 3000; ++n) {
     const sampling_config_t c = {static_cast<std::int16_t>(random.between(400.0, 2500.0)), HAL_ADC_BURST_TICKS,
                                  static_cast<std::int16_t>(random.between(100.0, 2000.0)),
-                                 static_cast<std::int16_t>(random.between(5000.0, 9800.0))};
+                                 static_cast<std::int16_t>(random.between(5000.0, 9800.0)),
+                                 static_cast<std::uint16_t>(1 + n % SVPWM_WINDOWS)};
     svpwm_pulses_t pulses;
     for (int leg = 0; leg < 3; ++leg) {
       pulses.at[leg] = static_cast<std::int16_t>(random.between(260.0, 9000.0));
@@ -44,45 +45,51 @@ TEST(Windows, ObeyTheRulesForRandomPulses) {
     ASSERT_NO_FATAL_FAILURE(expect_rules(p, c)) << n;
     windows += p.window_count;
   }
-  EXPECT_GT(windows, 3000);
+  EXPECT_GT(windows, 2000);
 }
 
-// Every interval looked at, the three with the longest span kept.
-TEST(Windows, AreTheLongestOnes) {
+// Every interval looked at; of those with the longest span, a zero vector by a quarter of it, as many kept as are
+// wanted.
+TEST(Windows, AreThoseThatTellMost) {
   Random random(91);
-  const sampling_config_t c = default_modulator().sampling;
+  sampling_config_t c = default_modulator().sampling;
+  int zero_vectors = 0;
   for (int n = 0; n < 1500; ++n) {
+    c.windows = static_cast<std::uint16_t>(2 + n % 2);
     svpwm_pulses_t pulses;
     for (int leg = 0; leg < 3; ++leg) {
       pulses.at[leg] = static_cast<std::int16_t>(random.between(260.0, 9000.0));
       pulses.at[SVPWM_LEGS + leg] = static_cast<std::int16_t>(random.between(pulses.at[leg] + 1.0, 9960.0));
     }
-    std::vector<int> spans;
+    std::vector<int> worths;
     for (const Interval& w : intervals(pulses)) {
       const int last = std::min<int>(w.end - c.burst_ticks, c.last_tick);
       const int span = last - (w.begin + c.settle_ticks);
-      if (span >= c.span_min_ticks) spans.push_back(span);
+      if (span >= c.span_min_ticks) worths.push_back(svpwm_is_zero_vector(w.state) ? span / 4 : span);
     }
-    std::sort(spans.rbegin(), spans.rend());
-    if (spans.size() > 3) spans.resize(3);
+    std::sort(worths.rbegin(), worths.rend());
+    if (worths.size() > c.windows) worths.resize(c.windows);
     const svpwm_pattern_t p = pattern_of(ordered(pulses), c);
     std::vector<int> found;
     for (int k = 0; k < p.window_count; ++k) {
-      found.push_back(p.windows[k].end - p.windows[k].start);
+      const bool zero = svpwm_is_zero_vector(p.windows[k].state);
+      found.push_back((p.windows[k].end - p.windows[k].start) / (zero ? 4 : 1));
+      zero_vectors += zero ? 1 : 0;
     }
     std::sort(found.rbegin(), found.rend());
-    ASSERT_EQ(found, spans) << n;
+    ASSERT_EQ(found, worths) << n;
   }
+  EXPECT_GT(zero_vectors, 100);
 }
 
 TEST(Windows, NoneInPulsesThatAreAllTooShort) {
-  const sampling_config_t c = {2500, 140, 2000, 9640};
+  const sampling_config_t c = {2500, 140, 2000, 9640, 2};
   const svpwm_pulses_t pulses = {{1500, 3000, 4500, 6000, 7500, 9000}, 0};
   EXPECT_EQ(pattern_of(ordered(pulses), c).window_count, 0);
 }
 
 TEST(Windows, CoincidentEdgesMakeNoEmptyWindow) {
-  const sampling_config_t c = {400, 140, 100, 9640};
+  const sampling_config_t c = {400, 140, 100, 9640, 3};
   const svpwm_pulses_t pulses = {{1000, 1000, 1000, 5000, 5000, 5000}, 0};
   const svpwm_pattern_t p = pattern_of(ordered(pulses), c);
   ASSERT_EQ(p.window_count, 3);

@@ -182,4 +182,5 @@ const position_source_t flux_source = {source_flux,
                                        flux_source_follow,
                                        flux_begin,
                                        NULL,
-                                       SOURCE_OBSERVES | SOURCE_READS | SOURCE_HANDS_OVER | SOURCE_BLENDS};
+                                       SOURCE_OBSERVES | SOURCE_READS | SOURCE_HANDS_OVER | SOURCE_BLENDS,
+                                       2};

@@ -109,4 +109,4 @@ static void paper_begin(drive_t* d, bool keeps) {
 }
 
 const position_source_t paper_source = {
-    source_paper, paper_excitation, NULL, NULL, paper_begin, NULL, SOURCE_BLENDS | SOURCE_ALTERNATES};
+    source_paper, paper_excitation, NULL, NULL, paper_begin, NULL, SOURCE_BLENDS | SOURCE_ALTERNATES, 3};
