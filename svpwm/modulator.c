@@ -9,7 +9,7 @@ bool modulator_config_valid(const modulator_config_t* c) {
          q_in_range(c->extended.zero_ticks, 0, 5000) &&
          q_in_range(c->sampling.settle_ticks, SAMPLING_SETTLE_MIN_TICKS, 2500) &&
          q_in_range(c->sampling.burst_ticks, 50, 500) && q_in_range(c->sampling.span_min_ticks, 100, 2000) &&
-         q_in_range(c->sampling.last_tick, 5000, 9800) && q_in_range(c->sampling.windows, 1, SVPWM_WINDOWS);
+         q_in_range(c->sampling.last_tick, 5000, 9800);
 }
 
 void modulator_reset(modulator_t* s) {

@@ -100,10 +100,9 @@ static bool load_machine(drive_config_t* c) {
 #endif
 
 // Two neighbouring active vectors are far from the mean voltage, and what the model's inductances lack would stand for
-// an EMF: who asks for them has the rest of the period looked at, too.
+// an EMF: who asks for pulses of his own has the rest of the period looked at, too.
 static uint16_t windows_wanted(const parameters_t* p) {
-  const bool neighbours = p->excitation == EXCITATION_EXTENDED || p->excitation == EXCITATION_ALTERNATING;
-  return neighbours ? SVPWM_WINDOWS : drive_source_wanted()->windows;
+  return (p->excitation == EXCITATION_BY_SOURCE) ? drive_source_wanted()->windows : SVPWM_WINDOWS;
 }
 
 static bool load_modulation(drive_config_t* c) {

@@ -10,7 +10,7 @@
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 
-static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
+const int32_t position_per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
 
 static bool is_slot(const drive_t* d, schedule_slot_t slot) { return d->schedule.slot == slot; }
 
@@ -57,7 +57,7 @@ static void measure_current(drive_t* d, const estimator_output_t* first) {
   }
   // The frame turns by 0.13 rad in a period at 3000 rpm on motor A: for a ripple one angle will do.
   const dq_t ripple_q16 = frame_park(s->ripple_q16, s->frames[s->count / 2u].rotation);
-  const int32_t per_count_q30 = per_windows_q30[s->count];
+  const int32_t per_count_q30 = position_per_windows_q30[s->count];
   const dq_t mean_q20 = {less_ripple_q20(sum.d, q_mul_hi(d->model.yd_q30, ripple_q16.d), per_count_q30),
                          less_ripple_q20(sum.q, q_mul_hi(d->model.yq_q30, ripple_q16.q), per_count_q30)};
   d->control.measured_q20 = mean_q20;

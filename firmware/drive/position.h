@@ -5,6 +5,9 @@
 
 #include "firmware/mode/mode.h"
 
+/// 1 / n of n windows.
+extern const int32_t position_per_windows_q30[ESTIMATOR_WINDOWS + 1];
+
 /// Lets AVV start from this angle and speed: a start that looks for the axis has nothing else at work.
 void position_preset_axis(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 

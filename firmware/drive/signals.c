@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 #include "firmware/base/edition.h"
+#include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 
@@ -23,7 +24,6 @@ static const signal_info_t table[] = {
 #define SIGNAL_RPM(speed_bpp) q_mul_sat(speed_bpp, d->config.rpm_per_bpp_q40, 24)
 // By Clarke's components of the windows: they have offset and gains in them already.
 static int32_t phase_current(const volatile drive_t* d, bool of_b) {
-  static const int32_t per_windows_q30[ESTIMATOR_WINDOWS + 1] = {0, 1073741824L, 536870912L, 357913941L};
   const uint16_t count = d->samples.count & ESTIMATOR_WINDOWS;  // three: a mask, too
   int32_t alpha_q17 = 0;
   int32_t beta_q17 = 0;
@@ -31,7 +31,7 @@ static int32_t phase_current(const volatile drive_t* d, bool of_b) {
     alpha_q17 += q_shr(d->samples.windows[k].current_q20.alpha, 3);
     if (of_b) beta_q17 += q_shr(d->samples.windows[k].current_q20.beta, 3);
   }
-  const int32_t share_q30 = per_windows_q30[count];
+  const int32_t share_q30 = position_per_windows_q30[count];
   if (!of_b) return q_mul_sat(alpha_q17, share_q30, 27);
   return q_mul_sat(q_mul_floor(beta_q17, FRAME_SQRT3_HALF_Q30, 30) - alpha_q17 / 2, share_q30, 27);
 }

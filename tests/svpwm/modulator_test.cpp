@@ -133,14 +133,6 @@ TEST(Modulator, ConfigurationRangesIncludeTheirEndsOnly) {
   }
 }
 
-TEST(Modulator, KeepsOneWindowAtLeastAndAsManyAsThereIsRoomFor) {
-  for (std::uint16_t windows = 0; windows <= SVPWM_WINDOWS + 1; ++windows) {
-    modulator_config_t c = default_modulator();
-    c.sampling.windows = windows;
-    EXPECT_EQ(modulator_config_valid(&c), windows >= 1 && windows <= SVPWM_WINDOWS) << windows;
-  }
-}
-
 // Nothing of what went before is left: neither whose turn it is in the alternating layout nor the DC link.
 TEST(Modulator, AfterAResetItBeginsLikeANewOne) {
   const modulator_config_t c = default_modulator();
