@@ -17,7 +17,7 @@ enum {
 #define DROP_CHANGE_MAX_Q16 98304L  // 1.5 V
 #define EDGE_CHANGE_MAX_Q16 65536L  // 1 us
 #define TURN_MAX_BAM 357913941L     // 30 degrees: beyond that next to no saliency is left
-#define SALIENCY_SHARE 4            // nor with less than a quarter of it
+#define SALIENCY_SHARE 8            // nor with less than an eighth of it
 #define SALIENT_LEAST 2u            // levels: fewer may as well be a wrong order of the phases
 #define CURRENT_SHARE 10            // a level's current is met within a tenth
 

@@ -138,9 +138,9 @@ static bool load_control(drive_config_t* c) {
   // B (Q24, N m s) * rpm per bpp (Q40) * 2 pi / 60.
   c->friction_per_bpp_q40 = qc_mul_sat(qc_mul_sat(p->friction, c->rpm_per_bpp_q40, 24), 112442659L, 30);
   c->ramp_step_bpp = qc_mul_sat(p->speed_ramp, c->bpp_per_rpm_q8, 16) / 1000;
-  // A third of the saliency (Lq - Ld)/(Lq + Ld), over the flux.
-  const int32_t third_q30 = q_div((p->inductance_q - p->inductance_d) / 3, p->inductance_q + p->inductance_d, 30);
-  c->salient_bpp_q4 = qc_mul_sat(q_div(third_q30, c->nameplate.emf_q16, 20), TURNS_Q32_PER_RAD, 30);
+  // A sixth of the saliency (Lq - Ld)/(Lq + Ld), over the flux.
+  const int32_t sixth_q30 = q_div((p->inductance_q - p->inductance_d) / 6, p->inductance_q + p->inductance_d, 30);
+  c->salient_bpp_q4 = qc_mul_sat(q_div(sixth_q30, c->nameplate.emf_q16, 20), TURNS_Q32_PER_RAD, 30);
   c->salient_q20 = p->saliency_current;
   if (p->saliency_current == 0 || (drive_source_wanted()->traits & SOURCE_MEASURES) != 0u) c->salient_q20 = INT32_MAX;
   c->hold_gain_q30 = q_div(p->position_hold, c->nameplate.periods_per_second, 22);

@@ -61,8 +61,8 @@ static int32_t load_current(const drive_t* d) {
 
 // A rotor that is found by its saliency is lost with it: the current stays below saliency_current until the EMF tells
 // as much. Per radian a window's slope changes by y 2 s 2/3 U for a saliency s = (Lq - Ld)/(Lq + Ld) at a link U, and
-// by y E for an EMF E. At saliency_current there is at least a quarter of s left, and both weigh the same where E is
-// U s / 3. From that speed to twice of it the limit rises evenly, so that no step of it makes the current chatter.
+// by y E for an EMF E. At saliency_current there is at least an eighth of s left, and both weigh the same where E is
+// U s / 6. From that speed to twice of it the limit rises evenly, so that no step of it makes the current chatter.
 static int32_t usable_current(const drive_t* d) {
   const int32_t limit_q20 = d->control.current_limit_q20;
   const int32_t more_q20 = limit_q20 - d->config.salient_q20;

@@ -205,10 +205,10 @@ TEST_F(CommissioningJudge, AMapOfAnotherScaleIsUsedWhole) {
   }
 }
 
-// 2.755 mH without current: with less than 0.689 of them the rotor is not found well enough. The points between the
+// 2.755 mH without current: with less than 0.344 of them the rotor is not found well enough. The points between the
 // measured ones lie on straight lines.
 TEST_F(CommissioningJudge, AMapEndsWhereTheSaliencyDoes) {
-  measured(4, {4.655e-3, 5.2e-3, 0.16e-3}, 14.0);
+  measured(4, {4.655e-3, 4.9e-3, 0.16e-3}, 14.0);
   EXPECT_EQ(verdict("lqq_4"), VERDICT_USED);
   commissioning_report_t report;
   commissioning_judge(&c, &report);
@@ -227,7 +227,7 @@ TEST_F(CommissioningJudge, AMapEndsWhereTheSaliencyDoes) {
 // Lost by its amount or by its turn; a level that is bad between good ones is bad, and with less than two good ones the
 // order of the phases may be.
 TEST_F(CommissioningJudge, ASaliencyEndsOnlyAboveTwoLevelsThatHaveIt) {
-  constexpr Inductances kNone = {4.655e-3, 5.2e-3, 0.0}, kTurned = {5.0e-3, 6.0e-3, 1.0e-3}, kGood = saturated(1);
+  constexpr Inductances kNone = {4.655e-3, 4.9e-3, 0.0}, kTurned = {5.0e-3, 6.0e-3, 1.0e-3}, kGood = saturated(1);
   const auto current = [this](const std::vector<Inductances>& l) {
     for (int level = 1; level <= 4; ++level) measured(level, l[level - 1], 3.5 * level);
     commissioning_report_t report;
@@ -247,7 +247,7 @@ TEST_F(CommissioningJudge, ASaliencyEndsOnlyAboveTwoLevelsThatHaveIt) {
 
 // What is shortened rests on all of its levels.
 TEST_F(CommissioningJudge, AMapThatEndsEarlyIsUsedWhole) {
-  measured(4, {4.655e-3, 5.2e-3, 0.16e-3}, 14.0);
+  measured(4, {4.655e-3, 4.9e-3, 0.16e-3}, 14.0);
   measured(2, saturated(2), 5.0);
   EXPECT_EQ(verdict("lqq_2"), VERDICT_NOT_MEASURED);
   for (const char* name : {"map_current", "lqq_1", "lqq_4", "saliency_current"}) {

@@ -146,11 +146,11 @@ TEST_F(SpeedTask, TheTorqueCurrentHasTheRest) {
   }
 }
 
-// Up to the EMF that tells the angle as well as a quarter of the saliency, a third of its share of the link, the
+// Up to the EMF that tells the angle as well as an eighth of the saliency, a sixth of its share of the link, the
 // current is that which leaves the saliency; at twice that it is the whole limit's again.
 TEST_F(SpeedTask, ARotorThatIsFoundByItsSaliencyKeepsIt) {
   const double l_d = real(parameters.inductance_d, 20), l_q = real(parameters.inductance_q, 20);
-  const double even = kLink / 3.0 * (l_q - l_d) / (l_q + l_d) / real(parameters.magnet_flux, 28);  // rad/s
+  const double even = kLink / 6.0 * (l_q - l_d) / (l_q + l_d) / real(parameters.magnet_flux, 28);  // rad/s
   const auto room = [&](double salient, double speed_then, int source) {
     parameters.saliency_current = raw(salient, 20);
     parameters.position_source = source;

@@ -169,9 +169,9 @@ def test_the_vector_follows_from_the_nameplate():
     ("change", "title", "words"),
     [
         (
-            ("current_limit = 5.0", "current_limit = 20.0"),
+            ("current_limit = 5.0", "current_limit = 22.0"),
             "start at rest",
-            "a quarter of that is there up to 9.53 A; current_limit is 20 A: choose current_limit below 18.1 A",
+            "an eighth of that is there up to 10.5 A; current_limit is 22 A: choose current_limit below 19.9 A",
         ),
         (("magnet_flux = 0.11", "magnet_flux = 0.9"), "gates off", "link_maximum is 420 V"),
         (("magnet_flux = 0.11", "magnet_flux = 0.9"), "top speed", "speed_limit is 1500 rpm"),

@@ -24,9 +24,9 @@ def saliency(motor: Described) -> Finding:
     words = f"(Lq − Ld)/(Lq + Ld) is {share:.1%} without current"
     if not motor.plant("machine", "saturation"):
         return Finding("start at rest", True, words)
-    # The plant's Lqq is Lq / (1 + (iq / 2 rated)^2); a quarter of the difference is what the drive needs.
-    end = 2.0 * motor.plant("machine", "rated_peak_current") * math.sqrt(q / (d + (q - d) / 4.0) - 1.0)
-    words += f", and a quarter of that is there up to {end:.3g} A; current_limit is {limit:.3g} A"
+    # The plant's Lqq is Lq / (1 + (iq / 2 rated)^2); an eighth of the difference is what the drive needs.
+    end = 2.0 * motor.plant("machine", "rated_peak_current") * math.sqrt(q / (d + (q - d) / 8.0) - 1.0)
+    words += f", and an eighth of that is there up to {end:.3g} A; current_limit is {limit:.3g} A"
     if end >= limit:
         return Finding("start at rest", True, words)
     levels = math.floor(_MAP_LEVELS * end / limit)
