@@ -2,17 +2,18 @@
 
 #define ZERO_SHIFT 2u
 
-static int32_t worth(const svpwm_window_t* w) {
+static int32_t worth(const svpwm_window_t* w, unsigned zero_shift) {
   const int32_t span = (int32_t)w->end - w->start;
-  return svpwm_is_zero_vector(w->state) ? q_shr(span, ZERO_SHIFT) : span;
+  return svpwm_is_zero_vector(w->state) ? q_shr(span, zero_shift) : span;
 }
 
 // One more than are kept: that which tells least goes, and the later ones move up.
 static void leave_one_out(svpwm_window_t w[], uint16_t kept) {
+  const unsigned zero_shift = (kept < SVPWM_WINDOWS) ? ZERO_SHIFT : 0u;
   uint16_t least = 0;
-  int32_t least_worth = worth(&w[0]);
+  int32_t least_worth = worth(&w[0], zero_shift);
   for (uint16_t k = 1; k <= kept; k++) {
-    const int32_t own = worth(&w[k]);
+    const int32_t own = worth(&w[k], zero_shift);
     if (own >= least_worth) continue;
     least_worth = own;
     least = k;

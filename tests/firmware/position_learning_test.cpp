@@ -57,6 +57,19 @@ TEST_F(Learning, ADriveThatRunsLearnsEachInItsTurn) {
   }
 }
 
+// A period with three windows has no room for the polarity's watch beside it.
+TEST_F(Learning, TheWatchTakesTheVoltagesTurnOfAFullPeriod) {
+  for (const std::uint16_t count : {2, 3}) {
+    for (const bool watched : {true, false}) {
+      learn_with(POSITION_OBSERVER);
+      see(count);
+      polarity_watch.open = watched;
+      estimate(SLOT_VOLTAGE);
+      EXPECT_EQ(voltage(), !(watched && count == 3));
+    }
+  }
+}
+
 // A turn takes 5/4 as long as the places say, and twice that while the shaft turns, where half as much again is learnt.
 TEST_F(Learning, SharesAreThoseOfTheParametersTimes) {
   learn_with(POSITION_OBSERVER);

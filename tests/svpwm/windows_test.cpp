@@ -48,14 +48,15 @@ TEST(Windows, ObeyTheRulesForRandomPulses) {
   EXPECT_GT(windows, 2000);
 }
 
-// Every interval looked at; of those with the longest span, a zero vector by a quarter of it, as many kept as are
-// wanted.
+// Every interval looked at; of those with the longest span, of two a zero vector by a quarter of it, as many as
+// are wanted.
 TEST(Windows, AreThoseThatTellMost) {
   Random random(91);
   sampling_config_t c = default_modulator().sampling;
   int zero_vectors = 0;
   for (int n = 0; n < 1500; ++n) {
     c.windows = static_cast<std::uint16_t>(2 + n % 2);
+    const int per_zero = c.windows == 2 ? 4 : 1;
     svpwm_pulses_t pulses;
     for (int leg = 0; leg < 3; ++leg) {
       pulses.at[leg] = static_cast<std::int16_t>(random.between(260.0, 9000.0));
@@ -65,7 +66,7 @@ TEST(Windows, AreThoseThatTellMost) {
     for (const Interval& w : intervals(pulses)) {
       const int last = std::min<int>(w.end - c.burst_ticks, c.last_tick);
       const int span = last - (w.begin + c.settle_ticks);
-      if (span >= c.span_min_ticks) worths.push_back(svpwm_is_zero_vector(w.state) ? span / 4 : span);
+      if (span >= c.span_min_ticks) worths.push_back(svpwm_is_zero_vector(w.state) ? span / per_zero : span);
     }
     std::sort(worths.rbegin(), worths.rend());
     if (worths.size() > c.windows) worths.resize(c.windows);
@@ -73,7 +74,7 @@ TEST(Windows, AreThoseThatTellMost) {
     std::vector<int> found;
     for (int k = 0; k < p.window_count; ++k) {
       const bool zero = svpwm_is_zero_vector(p.windows[k].state);
-      found.push_back((p.windows[k].end - p.windows[k].start) / (zero ? 4 : 1));
+      found.push_back((p.windows[k].end - p.windows[k].start) / (zero ? per_zero : 1));
       zero_vectors += zero ? 1 : 0;
     }
     std::sort(found.rbegin(), found.rend());
