@@ -12,6 +12,7 @@ from stillspin.measure import metrics
 native = pytest.importorskip("stillspin._core", reason="the native module is not built")
 
 FLUX_ALONE = {"flux_low": 20.0, "flux_high": 40.0}
+VECTOR = {"if_current": 8.0, "if_acceleration": 500.0, "if_speed": 300.0, "speed_ramp": 3000.0}  # the drive's defaults
 BRAKE = {"coulomb_friction": 1.0, "stiction": 1.0}  # N m
 
 
@@ -46,8 +47,8 @@ def start(motor, source, angle, mechanics, speed=300.0, **parameters):
         ("A", 8, FLUX_ALONE),
         ("B", 4, {}),
         ("B", 7, FLUX_ALONE),
-        ("B-SPM", 5, FLUX_ALONE),
-        ("B-SPM", 7, FLUX_ALONE),
+        ("B-SPM", 5, FLUX_ALONE | VECTOR),
+        ("B-SPM", 7, FLUX_ALONE | VECTOR),
     ],
 )
 def test_the_source_takes_over_from_the_vector(motor, source, parameters, angle, speed):

@@ -72,4 +72,4 @@ static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
 }
 
 const position_source_t encoder_source = {
-    source_encoder, NULL, NULL, NULL, encoder_begin, is_reversed, SOURCE_MEASURES | SOURCE_SINGLE, 2};
+    source_encoder, NULL, NULL, NULL, encoder_begin, is_reversed, SOURCE_MEASURES | SOURCE_SINGLE, 3};

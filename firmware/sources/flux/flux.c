@@ -183,4 +183,4 @@ const position_source_t flux_source = {source_flux,
                                        flux_begin,
                                        NULL,
                                        SOURCE_OBSERVES | SOURCE_READS | SOURCE_HANDS_OVER | SOURCE_BLENDS,
-                                       2};
+                                       3};
