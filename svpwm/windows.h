@@ -39,7 +39,8 @@ static inline svpwm_finder_t svpwm_finder(const sampling_config_t* c, svpwm_patt
 }
 
 /// An edge that may come before the one that has ended the last window; a window that may be worth it, behind the edges
-/// that have passed. Of two a zero vector, which shows no saliency, counts a quarter of its length.
+/// that have passed. Where two are kept a zero vector, which shows no saliency, counts a
+/// quarter of its length.
 void svpwm_shorten_window(const sampling_config_t* c, svpwm_pattern_t* pattern, int32_t end);
 void svpwm_take_window(const sampling_config_t* c, svpwm_pattern_t* pattern, int32_t begin, int32_t end,
                        unsigned passed);

@@ -12,18 +12,20 @@ from stillspin.measure import metrics
 native = pytest.importorskip("stillspin._core", reason="the native module is not built")
 
 FLUX_ALONE = {"flux_low": 20.0, "flux_high": 40.0}
-VECTOR = {"if_current": 8.0, "if_acceleration": 500.0, "if_speed": 300.0, "speed_ramp": 3000.0}  # the drive's defaults
+VECTOR = ("if_current", "if_acceleration", "if_speed")  # at the drive's defaults for all, as the bounds below are
 BRAKE = {"coulomb_friction": 1.0, "stiction": 1.0}  # N m
 
 
 def start(motor, source, angle, mechanics, speed=300.0, **parameters):
     """A start in profile `bench` and a second at this speed, rpm."""
     native = importlib.import_module("stillspin._core")
-    loaded = profile.load("bench", core.plant_schema(native), core.parameters(native), motor)
+    known = core.parameters(native)
+    loaded = profile.load("bench", core.plant_schema(native), known, motor)
+    vector = {name: known[name].default for name in VECTOR}
     plant = profile.merged(loaded.plant, {"initial": {"angle": angle}, "mechanics": mechanics})
     return native.run(
         plant=plant,
-        parameters={**loaded.parameters, "position_source": source, "start_method": 1, **parameters},
+        parameters={**loaded.parameters, **vector, "position_source": source, "start_method": 1, **parameters},
         commands=[(0.0, "speed_ref_rpm", speed)],
         load=[],
         duration=1.0,
@@ -47,8 +49,8 @@ def start(motor, source, angle, mechanics, speed=300.0, **parameters):
         ("A", 8, FLUX_ALONE),
         ("B", 4, {}),
         ("B", 7, FLUX_ALONE),
-        ("B-SPM", 5, FLUX_ALONE | VECTOR),
-        ("B-SPM", 7, FLUX_ALONE | VECTOR),
+        ("B-SPM", 5, FLUX_ALONE),
+        ("B-SPM", 7, FLUX_ALONE),
     ],
 )
 def test_the_source_takes_over_from_the_vector(motor, source, parameters, angle, speed):

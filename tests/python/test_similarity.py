@@ -2,6 +2,8 @@
 
 import dataclasses
 import importlib
+import re
+from pathlib import Path
 
 import pytest
 from test_scales import PLANT, larger
@@ -10,6 +12,7 @@ from stillspin import core, resources
 from stillspin.cases import nameplate, profile, similarity
 from stillspin.scales import SCALES
 
+ROOT = Path(__file__).resolve().parents[2]
 NAMES = [path.stem for path in resources.directory(resources.CATALOGUE).glob("*.toml")]
 
 
@@ -50,6 +53,13 @@ def times(native, name, **changes):
 def test_the_motors_that_ship_are_of_the_size_of_the_defaults(native, name):
     loaded = profile.load("bench", core.plant_schema(native), core.parameters(native), name)
     assert loaded.by_rule == ()
+
+
+def test_a_segment_of_the_polarity_test_is_as_long_as_the_drives():
+    (periods,) = re.findall(
+        r"#define POLARITY_SEGMENT (\d+)", (ROOT / "estimators/polarity.h").read_text(encoding="utf-8")
+    )
+    assert pytest.approx(int(periods) * similarity.PERIOD) == similarity.POLARITY_SEGMENT
 
 
 def test_the_reference_is_motor_a(native):
