@@ -87,7 +87,7 @@ DEFECTS = (
         "words", "read_speed", "firmware/console/commands_drive.c", "(uint16_t)(value->count - length)", "value->count"
     ),
     Defect(
-        "edges", "svpwm_take_window", "svpwm/windows.c", "window_count < SVPWM_WINDOWS", "window_count <= SVPWM_WINDOWS"
+        "edges", "svpwm_take_window", "svpwm/windows.c", "window_count < c->windows", "window_count <= c->windows"
     ),
     Defect(
         "control",
