@@ -86,9 +86,7 @@ DEFECTS = (
     Defect(
         "words", "read_speed", "firmware/console/commands_drive.c", "(uint16_t)(value->count - length)", "value->count"
     ),
-    Defect(
-        "edges", "svpwm_take_window", "svpwm/windows.c", "window_count < c->windows", "window_count <= c->windows"
-    ),
+    Defect("edges", "svpwm_take_window", "svpwm/windows.c", "window_count < c->windows", "window_count <= c->windows"),
     Defect(
         "control",
         "machine_torque_constant_q24",
