@@ -39,7 +39,10 @@ def trace(
     motor: MotorOption = resources.DEFAULT_MOTOR,
     seed: SeedOption = 1,
 ) -> None:
-    """List executed instructions: cycle, address, instruction, its cycles with waits, registers that it changed."""
+    """List executed instructions: cycle, address, instruction, its cycles with waits, registers that it changed.
+
+    Exit status 1 when a place is not reached; those before the end are listed all the same.
+    """
     image = opened.read(file, rom)
     first = image.names.address(begin, "--from") if begin else None
     last = image.names.address(end, "--to") if end else None
@@ -47,12 +50,19 @@ def trace(
     with opened.closing(board, image):
         opened.advance(board, after)
         if first is not None and not opened.run_to(board, [first], within):
-            raise CampaignError(f"--from: {image.names.place(first)} was not reached within {within:g} s")
+            raise CampaignError(_missed("--from", image.names.place(first), within))
         board.trace(count)
         if last is None:
             board.stop_after(count)
-        if not opened.run_to(board, () if last is None else [last], within):
-            print(f"not reached within {within:g} s; the last instructions before:")
+        stopped = opened.run_to(board, () if last is None else [last], within)
         for line in tracing.lines(board, image.names):
             print(line)
         opened.say(board, image)
+        if not stopped and last is not None:
+            raise CampaignError(_missed("--to", image.names.place(last), within))
+        if not stopped:
+            print(f"no more instructions within {within:g} s: the core sleeps")
+
+
+def _missed(option: str, place: str, within: float) -> str:
+    return f"{option}: {place} was not reached within {within:g} s; give it longer with --within"
