@@ -17,8 +17,9 @@ DEMO_OUT := out/demo
 PICTURED := A10 A11 A16 A18b
 PICTURES_OUT := out/pictures
 
-# A Python path set for something else must not reach into .venv.
-unexport PYTHONPATH PYTHONHOME
+# A Python path set for something else must not reach into .venv; nor that no compiled module is kept, for then every start
+# of a command compiles all of them anew: the tests start commands some thousand times.
+unexport PYTHONPATH PYTHONHOME PYTHONDONTWRITEBYTECODE
 
 .PHONY: help setup build test demo bench catalogue isr-cost image-check int16 vectors cppcheck prove mcdc mutants verify \
 	loss fuzz fuzz16 wheel figures figures-long pictures docs lint format lock clean
