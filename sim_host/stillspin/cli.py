@@ -7,19 +7,23 @@ from __future__ import annotations
 
 import io
 import sys
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from stillspin import __version__, commands, resources
-from stillspin.cases import scenario_file
-from stillspin.commands.connection import opened
+from stillspin import __version__, commands
 from stillspin.one_line_errors import HELP, OneLineErrors
-from stillspin.report import tables
 from stillspin.revision import revision
 
+
+class _CommandLine(OneLineErrors):
+    def __init__(self, **attributes: Any) -> None:
+        super().__init__(**attributes)
+        self.commands: Any = commands.ByName()
+
+
 app = typer.Typer(
-    cls=OneLineErrors,
+    cls=_CommandLine,
     help="Tools of the drive: run its firmware on a simulated inverter and motor, or work with a board.",
     rich_markup_mode=None,
     context_settings=HELP,
@@ -42,33 +46,6 @@ def _common(
     ] = False,
 ) -> None:
     pass
-
-
-commands.register(app)
-
-
-@app.command(name="list")
-def list_() -> None:
-    """The scenarios, the profiles and the motors, and what campaigns draw from."""
-    tables.scenarios(scenario_file.load(identifier) for identifier in scenario_file.ids())
-    print()
-    for kind in ("profiles", "motors", "spreads", "faults"):
-        more = "; other people's: stillspin motor list" if kind == "motors" else ""
-        print(f"{kind}: {', '.join(resources.names(kind))}{more}")
-
-
-@app.command()
-def version(
-    *,
-    where: Annotated[
-        str, typer.Option("--drive", "-d", metavar="ADDRESS", help="The drive to ask, such as /dev/ttyUSB0.")
-    ] = "",
-) -> None:
-    """The version, and the revision of the sources; with --drive that of the drive's firmware, too."""
-    print(f"stillspin {__version__} ({revision()})")
-    if where:
-        with opened(where) as drive:
-            print(f"drive: {drive.identity.text}")
 
 
 def main() -> None:

@@ -51,6 +51,16 @@ def test_a_command_that_is_proposed_can_be_pasted(tmp_path, on_path, says):
     assert f"try:    {says} loader " in done.stdout
 
 
+def test_a_command_loads_no_other():
+    """Nor others' libraries: every start of a command and of a worker would wait for them."""
+    asked = "import sys; from stillspin import cli; cli.app(['schema', 'motor'], standalone_mode=False)"
+    code = f"{asked}; print(*sorted(sys.modules), file=sys.stderr)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
+    loaded = set(done.stderr.split())
+    assert "stillspin.commands.schema" in loaded
+    assert not loaded & {"cantools", "rich", "stillspin.commands.board", "stillspin.commands.hil"}
+
+
 def test_a_bare_group_shows_its_help(call, monkeypatch):
     group = typer.main.get_command(cli.app).commands["params"]
     monkeypatch.setattr(group, "invoke_without_command", False)

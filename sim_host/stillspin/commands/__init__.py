@@ -1,53 +1,66 @@
-"""The commands of `stillspin`."""
+"""The commands of `stillspin`: each is imported when it is asked for, as most take long to load."""
 
 from __future__ import annotations
 
+import importlib
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import Any
+
 import typer
 
-from stillspin.commands import (
-    board,
-    campaign,
-    campaigns,
-    can_bus,
-    commission,
-    console,
-    explain,
-    flash,
-    hil,
-    image,
-    loader,
-    monitor,
-    motor,
-    params,
-    round_trips,
-    schema,
-    scope,
-    startup,
-    tune,
-)
+_PLACES = {
+    "run": "campaigns.run",
+    "reproduce": "campaigns.reproduce",
+    "drift": "campaigns.drift",
+    "explain": "explain.explain",
+    "commission": "commission.commission",
+    "board": "board.board",
+    "startup-matrix": "startup.startup_matrix",
+    "round-trips": "round_trips.round_trips",
+    "campaign": "campaign.campaign",
+    "console": "console.console",
+    "schema": "schema.schema",
+    "scope": "scope.scope",
+    "monitor": "monitor.monitor",
+    "can": "can_bus.bus",
+    "tune": "tune.tune",
+    "hil": "hil.hil",
+    "flash": "flash.flash",
+    "demo-image": "flash.demo_image",
+    "loader": "loader.loader",
+    "list": "about.list_",
+    "version": "about.version",
+    "params": "params.app",
+    "motor": "motor.app",
+    "image": "image.app",
+}
+"""Module and function, or group, of each, in the order of the help."""
 
 
-def register(app: typer.Typer) -> None:
-    """Add them to the command line."""
-    app.command(name="run")(campaigns.run)
-    app.command(name="reproduce")(campaigns.reproduce)
-    app.command(name="drift")(campaigns.drift)
-    app.command(name="explain")(explain.explain)
-    app.command(name="commission")(commission.commission)
-    app.command(name="board")(board.board)
-    app.command(name="startup-matrix")(startup.startup_matrix)
-    app.command(name=round_trips.NAME)(round_trips.round_trips)
-    app.command(name=campaign.NAME, epilog=campaign.EXAMPLES)(campaign.campaign)
-    app.add_typer(params.app, name="params")
-    app.add_typer(motor.app, name="motor")
-    app.add_typer(image.app, name="image")
-    app.command(name="console")(console.console)
-    app.command(name="schema")(schema.schema)
-    app.command(name="scope")(scope.scope)
-    app.command(name="monitor")(monitor.monitor)
-    app.command(name="can")(can_bus.bus)
-    app.command(name="tune")(tune.tune)
-    app.command(name="hil")(hil.hil)
-    app.command(name="flash")(flash.flash)
-    app.command(name="demo-image")(flash.demo_image)
-    app.command(name="loader")(loader.loader)
+class ByName(Mapping[str, Any]):
+    """All commands as typer has them."""
+
+    def __getitem__(self, name: str) -> Any:
+        """See Mapping."""
+        return _command(name)
+
+    def __iter__(self) -> Iterator[str]:
+        """See Mapping."""
+        return iter(_PLACES)
+
+    def __len__(self) -> int:
+        """See Mapping."""
+        return len(_PLACES)
+
+
+@cache
+def _command(name: str) -> Any:
+    module, function = _PLACES[name].split(".")
+    there = importlib.import_module(f"{__name__}.{module}")
+    found, alone = getattr(there, function), typer.Typer(rich_markup_mode=None)
+    if isinstance(found, typer.Typer):
+        alone.add_typer(found, name=name)
+    else:
+        alone.command(name=name, epilog=getattr(there, "EXAMPLES", None))(found)
+    return typer.main.get_group(alone).commands[name]

@@ -1,0 +1,35 @@
+"""`stillspin list` and `stillspin version`: what there is, and of which state."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from stillspin import __version__, resources
+from stillspin.cases import scenario_file
+from stillspin.commands.connection import opened
+from stillspin.report import tables
+from stillspin.revision import revision
+
+
+def list_() -> None:
+    """The scenarios, the profiles and the motors, and what campaigns draw from."""
+    tables.scenarios(scenario_file.load(identifier) for identifier in scenario_file.ids())
+    print()
+    for kind in ("profiles", "motors", "spreads", "faults"):
+        more = "; other people's: stillspin motor list" if kind == "motors" else ""
+        print(f"{kind}: {', '.join(resources.names(kind))}{more}")
+
+
+def version(
+    *,
+    where: Annotated[
+        str, typer.Option("--drive", "-d", metavar="ADDRESS", help="The drive to ask, such as /dev/ttyUSB0.")
+    ] = "",
+) -> None:
+    """The version, and the revision of the sources; with --drive that of the drive's firmware, too."""
+    print(f"stillspin {__version__} ({revision()})")
+    if where:
+        with opened(where) as drive:
+            print(f"drive: {drive.identity.text}")
