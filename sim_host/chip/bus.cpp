@@ -1,6 +1,7 @@
 // Register accesses: what they cost, address decode, write protection (EALLOW) and clock gates.
 
 #include "hal/f2808/registers.h"
+#include "sim_host/chip/bus_pages.hpp"
 #include "sim_host/chip/core.hpp"
 
 namespace stillspin::chip {
@@ -15,67 +16,7 @@ constexpr std::uint32_t kFrame1Start = 0x6000;
 constexpr std::uint32_t kFrame2Start = 0x7000;
 constexpr std::uint32_t kFramesEnd = 0x8000;
 
-// Data space below 0x8000 in pages of 64 words: the finest grain at which the F2808's peripherals are laid out.
-enum class Device : std::uint8_t {
-  kNone,
-  kIdentity,
-  kFlash,
-  kSecurity,
-  kAdcMirror,
-  kTimers,
-  kPie,
-  kEPwm,
-  kEQep1,
-  kSci,
-  kGpio,
-  kSystem,
-  kAdc,
-  kI2c,
-  kCan
-};
-
-constexpr unsigned kPageShift = 6;
-constexpr std::uint32_t kPageMask = 0x3F;
-constexpr std::uint32_t kPageCount = 0x8000 >> kPageShift;
-constexpr std::uint32_t kAdcFrame = 0x7100;
-constexpr std::uint32_t kMirrorWords = 16;
-constexpr std::uint32_t kCanEnd = 0x6200;
-
-struct PageTable {
-  Device device[kPageCount] = {};
-  constexpr void set(std::uint32_t address, Device to) { device[address >> kPageShift] = to; }
-};
-
-constexpr PageTable make_page_table() {
-  PageTable table;
-  table.set(REG_DEVICECNF, Device::kIdentity);
-  table.set(REG_FOPT, Device::kFlash);
-  table.set(REG_KEY(0), Device::kSecurity);
-  table.set(REG_MIRROR_ADCRESULT0, Device::kAdcMirror);
-  table.set(CPUTIMER_BASE(0), Device::kTimers);
-  table.set(REG_PIECTRL, Device::kPie);
-  for (unsigned n = 1; n <= 6; ++n) table.set(EPWM_BASE(n), Device::kEPwm);
-  table.set(EQEP_BASE(1), Device::kEQep1);
-  table.set(SCI_BASE(1), Device::kSci);
-  table.set(REG_GPACTRL, Device::kGpio);
-  table.set(REG_GPADAT, Device::kGpio);
-  table.set(kSystemFrame, Device::kSystem);
-  table.set(kAdcFrame, Device::kAdc);
-  table.set(I2C_BASE, Device::kI2c);
-  for (std::uint32_t address = REG_CANME; address < kCanEnd; address += kPageMask + 1) table.set(address, Device::kCan);
-  return table;
-}
-
-constexpr PageTable kPages = make_page_table();
-
-Device device_at(std::uint32_t address) {
-  const std::uint32_t page = address >> kPageShift;
-  return page < kPageCount ? kPages.device[page] : Device::kNone;
-}
-
 std::uint16_t offset_in_page(std::uint32_t address) { return static_cast<std::uint16_t>(address & kPageMask); }
-// SCI-A shares its page with SPI-A and the external interrupts.
-bool is_sci(std::uint32_t address) { return address - SCI_BASE(1) <= SCI_PRI; }
 int epwm_module(std::uint32_t address) { return static_cast<int>((address - EPWM_BASE(1)) >> kPageShift); }
 
 Tick halves(std::uint32_t address) { return address >= kFrame2Start ? 2 : 1; }
@@ -96,7 +37,7 @@ inline Tick Core::read_cycles(std::uint32_t address) const {
 // Most reads are of results of the ADC.
 inline std::uint16_t Core::read_word(std::uint32_t address) {
   const std::uint32_t result = address - REG_MIRROR_ADCRESULT0;
-  return result < kMirrorWords && system_.adc_clock() ? adc_.result(result, now_) : bus_read(address);
+  return result < kAdcMirrorWords && system_.adc_clock() ? adc_.result(result, now_) : bus_read(address);
 }
 
 // ---- the four accesses ---------------------------------------------------------------------------------
@@ -132,7 +73,7 @@ std::uint32_t Core::read32(std::uint32_t address) {
   ++statistics_.reads;
   std::uint32_t value = 0;
   try {
-    if (device_at(address) == Device::kCan) {
+    if (device_at(address) == Device::kCan && has_register(address)) {
       value = read_can32(address);
     } else {
       value = read_word(address);
@@ -150,7 +91,7 @@ void Core::write32(std::uint32_t address, std::uint32_t value) {
   spend(kWriteCycles * halves(address));
   ++statistics_.writes;
   try {
-    if (device_at(address) == Device::kCan) {
+    if (device_at(address) == Device::kCan && has_register(address)) {
       write_can(address, value, true);
     } else {
       bus_write(address, static_cast<std::uint16_t>(value & 0xFFFFu));
@@ -188,16 +129,20 @@ void Core::note_unmodelled(std::uint32_t address, bool write) {
 // ---- reads ---------------------------------------------------------------------------------------------
 
 std::uint16_t Core::bus_read(std::uint32_t address) {
+  if (!has_register(address)) {
+    note_unmodelled(address, false);
+    return 0;
+  }
   switch (device_at(address)) {
     case Device::kEPwm:
       return read_epwm(address);
     case Device::kAdc:
       return gate_stops(system_.adc_clock(), address) ? 0 : adc_.read(offset_in_page(address), now_);
     case Device::kAdcMirror:
-      if (address - REG_MIRROR_ADCRESULT0 >= kMirrorWords || gate_stops(system_.adc_clock(), address)) return 0;
+      if (gate_stops(system_.adc_clock(), address)) return 0;
       return adc_.result(offset_in_page(address), now_);
     case Device::kPie:
-      return address < REG_PIECTRL ? 0 : interrupts_.read(static_cast<std::uint16_t>(address - REG_PIECTRL));
+      return interrupts_.read(static_cast<std::uint16_t>(address - REG_PIECTRL));
     case Device::kTimers:
       return timers_.read(offset_in_page(address), now_);
     case Device::kGpio:
@@ -232,10 +177,6 @@ std::uint16_t Core::read_epwm(std::uint32_t address) {
 }
 
 std::uint16_t Core::read_sci(std::uint32_t address) {
-  if (!is_sci(address)) {
-    note_unmodelled(address, false);
-    return 0;
-  }
   return gate_stops(system_.sci_clock(), address) ? 0
                                                   : sci_.read(static_cast<std::uint16_t>(address - SCI_BASE(1)), now_);
 }
@@ -255,7 +196,7 @@ std::uint16_t Core::read_system(std::uint16_t offset) const {
 std::uint16_t Core::inspect(std::uint32_t address) {
   if (code_ != nullptr && CodeCpu::is_vector(address)) return code_->vector_word(address);
   if (device_at(address) == Device::kNone) return inspect_memory(address);
-  if (device_at(address) == Device::kSci && !is_sci(address)) return 0;
+  if (!has_register(address)) return 0;
   const Statistics before = statistics_;
   const bool wide = device_at(address) == Device::kCan;
   const std::uint16_t value =
@@ -267,6 +208,10 @@ std::uint16_t Core::inspect(std::uint32_t address) {
 // ---- writes --------------------------------------------------------------------------------------------
 
 void Core::bus_write(std::uint32_t address, std::uint16_t value) {
+  if (!has_register(address)) {
+    note_unmodelled(address, true);
+    return;
+  }
   switch (device_at(address)) {
     case Device::kEPwm:
       write_epwm(address, value);
@@ -275,7 +220,7 @@ void Core::bus_write(std::uint32_t address, std::uint16_t value) {
       write_adc(address, value);
       return;
     case Device::kPie:
-      if (address >= REG_PIECTRL) interrupts_.write(static_cast<std::uint16_t>(address - REG_PIECTRL), value);
+      interrupts_.write(static_cast<std::uint16_t>(address - REG_PIECTRL), value);
       return;
     case Device::kGpio:
       write_gpio(address, value);
@@ -350,10 +295,6 @@ void Core::write_eqep1(std::uint32_t address, std::uint16_t value) {
 }
 
 void Core::write_sci(std::uint32_t address, std::uint16_t value) {
-  if (!is_sci(address)) {
-    note_unmodelled(address, true);
-    return;
-  }
   if (gate_stops(system_.sci_clock(), address)) return;
   sci_.write(static_cast<std::uint16_t>(address - SCI_BASE(1)), value, now_);
   set_due(kSci, sci_.next_event());

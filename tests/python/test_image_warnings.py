@@ -133,6 +133,68 @@ def test_parts_are_named_with_count_and_first_place(image):
     assert [line.removeprefix("warning: ")[: len(words)] for line, words in zip(said, NAMED, strict=True)] == NAMED
 
 
+READS_FRAMES = """
+        .org 0x3F7FF6
+        LB start
+        .org 0x3F4000
+start:  EALLOW
+        MOVW DP,#0x1C0
+        MOV @0x29,#0x68
+        MOV @0x1C,#0xFFFF
+        MOV @0x1D,#0xFFFF
+        EDIS
+        MOVL XAR7,#FIRST
+        MOVL XAR6,#LAST-FIRST
+more:   MOV AL,*XAR7++
+        BANZ more,AR6--
+stay:   NOP
+        B stay,UNC
+"""
+FRAMES = ((0x0800, 0x0CFF), (0x6000, 0x7FFF))
+
+
+def chip_registers():
+    """Every word of every register, by address, and the peripheral that it belongs to."""
+    with TABLE.open(newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["address"]]
+    return {
+        int(row["address"], 16) + copy * int(row["step"] or "0", 16) + word: (row["block"], row["register"])
+        for row in rows
+        for copy in range(int(row["count"]))
+        for word in range(int(row["width"]) // 16)
+    }
+
+
+def test_a_register_that_a_modelled_peripheral_has_not_is_noted(image):
+    """Each word of the frames is read once: noted is all but the registers of the chip that are modelled."""
+    there = chip_registers()
+    modelled = {address for address in there if peripherals.missing(address) is None}
+    for first, last in FRAMES:
+        made = opened.read(Path(image(READS_FRAMES.replace("FIRST", hex(first)).replace("LAST", hex(last)))))
+        board = opened.power_on(made, "bench", "A", 1)
+        with opened.closing(board, made):
+            assert opened.run_to(board, [made.names.addresses["stay"]], 0.5)
+            noted = set(board.unmodelled())
+        assert {hex(address) for address in noted ^ (set(range(first, last + 1)) - modelled)} == set()
+
+
+def test_a_part_of_a_peripheral_is_named_by_its_register(image):
+    text = READS_RAM.replace("0x3F8000", "0x6B1E").replace("MOV AL,*XAR7", "MOV *XAR7,#1\n        MOV AL,*+XAR7[2]")
+    _, (said, *more) = ask("time", image(text), "--for", "0.001")
+    assert said.startswith(
+        "warning: the edge capture of eQEP1 is not modelled (QCPRD, QCPRDLAT); it was read 1 time and written 1 time, "
+        "first QCPRD at 0x3F4002 start+2 (rom.asm:6). "
+    )
+    assert not more
+    named = {part.words.start + offset: name for part in peripherals.PARTS for offset, name in part.registers.items()}
+    assert named == {address: name for address, (_, name) in chip_registers().items() if address in named}
+
+
+def test_an_address_beside_the_registers_of_a_peripheral_is_said(image):
+    _, (said, *_) = ask("time", image(READS_RAM.replace("0x3F8000", "0x7058")), "--for", "0.001")
+    assert said.startswith("warning: no register is known at 0x007058; it was read 1 time, first 0x007058 at 0x3F4002 ")
+
+
 def test_what_many_addresses_take_is_told_shortly(image):
     """A pointer that runs away through empty memory: the first places, and how many more, of as many as are kept."""
     text = READS_RAM.replace("MOV AL,*XAR7", "RPT #255\n     || MOV *XAR7++,#0").replace("0x3F8000", "0x012000")

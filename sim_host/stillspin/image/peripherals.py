@@ -1,4 +1,4 @@
-"""The peripherals of the F2808 that the virtual chip has not, and their registers by name (SPRS230, register maps)."""
+"""What the virtual chip has not of an F2808's peripherals, and its registers by name (SPRS230, register maps)."""
 
 from __future__ import annotations
 
@@ -64,6 +64,14 @@ MISSING = (
 )
 
 
+PARTS = (
+    _at("the protected range of addresses", 0x0884, 2, {0x0: "PROTSTART", 0x1: "PROTRANGE"}),
+    _at("the watchdog of eQEP1", 0x6B12, 2, {0x0: "QWDTMR", 0x1: "QWDPRD"}),
+    _at("the edge capture of eQEP1", 0x6B1D, 4, {0x0: "QCTMR", 0x1: "QCPRD", 0x2: "QCTMRLAT", 0x3: "QCPRDLAT"}),
+)
+"""Of peripherals that are modelled."""
+
+
 def missing(address: int) -> Peripheral | None:
     """The one that an address lies in."""
-    return next((there for there in MISSING if address in there.words), None)
+    return next((there for there in (*MISSING, *PARTS) if address in there.words), None)
