@@ -43,7 +43,7 @@ def test_names_are_those_of_code():
 @pytest.mark.parametrize(
     ("data", "words"),
     [
-        (elf(BLOCKS, machine=40), "another processor"),
+        (elf(BLOCKS, machine=40), "is an ELF file for an ARM .machine 40., not for the C28x"),
         (elf(BLOCKS, order=b"\x01\x02"), "another processor"),
         (elf(BLOCKS, kind=1), "has not been linked"),
         (elf(BLOCKS)[:60], "cut short"),

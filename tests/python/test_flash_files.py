@@ -131,7 +131,7 @@ BAD = {
     "words": (b"hello, this is no image\n" * 9, "has an unknown format"),
     "noise": (bytes(range(7, 256)) * 20, "has an unknown format"),
     "elf": (b"\x7fELF" + bytes(200), "ELF file"),
-    "arm coff": (make.coff(IMAGE, target=0x0097), "another processor"),
+    "arm coff": (make.coff(IMAGE, target=0x0097), "for an ARM (TMS470) (0x0097), not for the C28x (0x009D): compile"),
     "object": (make.coff(IMAGE, flags=0x1101), "has not been linked"),
     "coff cut": (FORMATS["coff"][:-3], "is cut short"),
     "coff head": (FORMATS["coff"][:30], "is cut short"),

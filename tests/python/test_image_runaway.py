@@ -117,8 +117,10 @@ def test_what_it_does_to_the_chip_is_not_said_without_the_cause(storm, tmp_path,
 
 def test_a_trace_ends_there(image):
     arguments = ["image", "trace", str(image(0x012345)), "--to", "stay", "--instructions", "3", "--within", "0.001"]
-    lines = CliRunner().invoke(cli.app, arguments).stdout.splitlines()
-    assert lines[0].startswith("not reached")
+    done = CliRunner().invoke(cli.app, arguments)
+    assert done.exit_code == 1
+    assert "was not reached within 0.001 s" in done.stderr
+    lines = done.stdout.splitlines()
     assert [line.split()[1] for line in lines if line.startswith("  ")] == ["0x3F4005", "0x3F4007", "0x012345"]
     assert any(
         line.endswith("ITRAP0                                  is illegal and traps: the trace ends") for line in lines

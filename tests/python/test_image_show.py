@@ -1,5 +1,6 @@
 """`stillspin image show`: what an image loads, how full the memories are, and its code as instructions."""
 
+import re
 import struct
 
 import flash_files
@@ -115,6 +116,60 @@ def test_a_word_in_two_sections_counts_once():
     """L0 is there twice, and overlays share their words."""
     extents = [Extent(0x8000, 10, loaded=False), Extent(0x3F8005, 10, loaded=True), Extent(0x8002, 3, loaded=False)]
     assert list(Filled(extents).rows()) == [("L0", 15, 4096), ("RAM", 15, 18432)]
+
+
+def test_sections_that_are_loaded_to_one_place_are_named(tmp_path):
+    status, _, error = show(tmp_path, [Block(0x3F4000, (1, 2, 3)), Block(0x3F4100, (4,)), Block(0x3F4002, (5,))])
+    assert status == 2
+    assert "its sections sect0 and sect2 are loaded to the same place, 0x3F4002" in error
+
+
+def test_sections_that_run_at_one_place_are_named(tmp_path):
+    """.ebss has 0x8000 to 0x8063; L0 is there again at 0x3F8000."""
+    path = tmp_path / "some.out"
+    moved = {0x3F4000: (0x3F8063, 0x3F4000), 0x3F5000: (0x8064, 0x3F5000)}
+    there = [Block(0x3F4000, (1,)), Block(0x3F5000, (2,))]
+    path.write_bytes(flash_files.coff(there, heads_of=lambda address: moved.get(address, (address, address))))
+    done = CliRunner().invoke(cli.app, ["image", "show", str(path)])
+    assert done.exit_code == 0
+    shared = [line for line in done.stdout.splitlines() if "share" in line]
+    assert shared == [".ebss and sect0 share 0x008063 to 0x008063: an overlay, or a mistake of the command file"]
+
+
+FLOATING = """
+        .org 0x3F7FF6
+        LB start
+        .org 0x3F4000
+start:  SB over,EQ
+        MOVL XAR7,#table
+stay:   B stay,UNC
+over:   LCR other
+        B stay,UNC
+table:  .word 0xE203, 0xE80A
+other:  {}
+        LRETR
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "found"),
+    [
+        (".word 0xE2AF, 0x00C4", True),
+        ("MOVL XAR6,#0x00E2AF", False),
+        ("LB stay\n .word 0xE2AF", False),
+        ("BANZ 0x3F4000,AR1--\n .word 0xB5E8", True),
+    ],
+    ids=["reached", "an operand", "not reached", "a repeated block"],
+)
+def test_the_first_instruction_of_a_floating_point_unit_is_named(tmp_path, code, found):
+    source = tmp_path / "floating.asm"
+    source.write_text(FLOATING.format(code))
+    image = str(linked_file(tmp_path, "floating", [source]))
+    shown = CliRunner().invoke(cli.app, ["image", "show", image])
+    assert (shown.exit_code, "other" in shown.stdout.splitlines()[-1]) == (int(found), found)
+    run = CliRunner().invoke(cli.app, ["image", "time", image, "--for", "0.001"])
+    assert run.exit_code == (2 if found else 0), run.stderr
+    assert bool(re.search(r": 0x3F40\w\w other.* is an instruction of a C28x with a floating", run.stderr)) == found
 
 
 def test_memories_that_are_not_loaded(tmp_path):

@@ -55,6 +55,8 @@ def _say(there: Sequence[Section]) -> int:
     filled = Filled(extent for section in there for extent in section.extents())
     for name, used, size in filled.rows():
         print(f"{name:<9} {used:>6} of {counted(size, 'word')}")
+    for one, other, first, end in memories.shared((part.name, part.extents()) for part in there):
+        print(f"{one} and {other} share 0x{first:06X} to 0x{end - 1:06X}: an overlay, or a mistake of the command file")
     if filled.outside:
         print(f"{counted(filled.outside, 'word')} in no memory of the chip")
     in_rom = [section.name for section in there if memories.name(section.run) == IN_ROM]
@@ -96,9 +98,9 @@ def show(
 ) -> None:
     """Say what an image loads where, where it runs, and how full the memories are.
 
-    Exit status 1 when some of it lies in no memory.
+    Exit status 1 when some of it lies in no memory, or an F2808 has not the instructions.
     """
-    image = opened.read(file)
+    image = opened.look(file)
     program = image.program
     if code:
         for line in _code(program, image.names.address(code, "--code"), lines):
@@ -108,5 +110,8 @@ def show(
     print(f"{file.name}: {program.kind}, {counted(program.size, 'word')}{entry}")
     for words in image.remarks:
         print(f"{opened.WARNING}{words}")
-    if _say(sections.read(file, program)):
+    outside = _say(sections.read(file, program))
+    if image.foreign:
+        print(image.foreign)
+    if outside or image.foreign:
         raise typer.Exit(ExitCode.SHORT)

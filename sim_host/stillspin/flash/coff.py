@@ -16,6 +16,11 @@ from stillspin.flash.program import Block, Program, assemble
 
 MAGIC = b"\xc2\x00"
 _TARGET = 0x009D
+_OTHERS = {
+    **{0x0097: "an ARM (TMS470)", 0x0098: "a C54x", 0x0099: "a C6000", 0x009C: "a C55x", 0x00A0: "an MSP430"},
+    **{0x00A1: "a C55x+"},
+}
+"""Target numbers of TI's COFF (SPRAAO8)."""
 _HEADER = struct.Struct("<HHIIIHHH")
 _OPTIONAL = struct.Struct("<HHIIIIII")
 _SECTION = struct.Struct("<8sIIIIIIIIIHH")
@@ -50,7 +55,10 @@ def read(data: bytes, name: str) -> Program:
 def _read(data: bytes, name: str) -> Program:
     *_, optional, flags, target = _HEADER.unpack_from(data)
     if target != _TARGET:
-        raise InputError(f"{name}: is a COFF file for another processor (0x{target:04X}), not for the C28x (0x009D)")
+        raise InputError(
+            f"{name}: is a COFF file for {_OTHERS.get(target, 'another processor')} (0x{target:04X}), not for the C28x "
+            "(0x009D): compile and link it with cl2000"
+        )
     if not flags & _EXECUTABLE or not optional:
         raise InputError(f"{name}: is a COFF object that has not been linked; give the .out file")
     entry = _OPTIONAL.unpack_from(data, _HEADER.size)[5]
@@ -59,7 +67,7 @@ def _read(data: bytes, name: str) -> Program:
         for head in _heads(data)
         if head.is_loaded
     ]
-    return assemble(blocks, entry, "COFF", name)
+    return assemble(blocks, entry, "COFF", name, sections(data))
 
 
 class _Head(NamedTuple):

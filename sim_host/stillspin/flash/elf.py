@@ -20,6 +20,11 @@ KIND = "ELF"
 MAGIC = b"\x7fELF"
 _CLASS_AND_ORDER = b"\x01\x01"
 MACHINE = 141
+_OTHERS = {
+    **{3: "a PC", 40: "an ARM", 62: "a PC", 105: "an MSP430", 140: "a C6000", 142: "a C55x", 144: "a PRU"},
+    **{183: "an ARM", 243: "a RISC-V"},
+}
+"""Machine numbers of System V's ELF."""
 _EXECUTABLE = 2
 _HEADER = struct.Struct("<16sHHIIIIIHHHHHH")
 _SEGMENT = struct.Struct("<IIIIIIII")
@@ -71,11 +76,12 @@ def _read(data: bytes, name: str) -> Program:
     header = _header(data)
     if header.machine != MACHINE or data[4:6] != _CLASS_AND_ORDER:
         raise InputError(
-            f"{name}: is an ELF file for another processor (machine {header.machine}), not for the C28x ({MACHINE})"
+            f"{name}: is an ELF file for {_OTHERS.get(header.machine, 'another processor')} (machine "
+            f"{header.machine}), not for the C28x ({MACHINE}): compile and link it with cl2000"
         )
     if header.kind != _EXECUTABLE or not header.segment_count:
         raise InputError(f"{name}: is an ELF object that has not been linked; give the .out file")
-    return assemble(list(_blocks(data, header, name)), header.entry, KIND, name)
+    return assemble(list(_blocks(data, header, name)), header.entry, KIND, name, sections(data))
 
 
 def _blocks(data: bytes, header: _Header, name: str) -> Iterator[Block]:

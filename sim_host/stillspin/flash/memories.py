@@ -105,6 +105,22 @@ class Filled:
                 yield group, sum(count for _, count in used), sum(len(memory.words) for memory in there)
 
 
+def shared(owners: Iterable[tuple[str, Iterable[Extent]]]) -> Iterator[tuple[str, str, int, int]]:
+    """Two owners of words and the stretch that both have, first and end by its lower addresses: each pair once."""
+    taken = sorted(
+        (first, end, number, name)
+        for number, (name, extents) in enumerate(owners)
+        for extent in extents
+        for _, first, end in _parts(extent)
+    )
+    for at, (_, end, number, name) in enumerate(taken):
+        for other_first, other_end, other_number, other in taken[at + 1 :]:
+            if other_first >= end:
+                break
+            if other_number != number:
+                yield name, other, other_first, min(end, other_end)
+
+
 def _parts(extent: Extent) -> Iterator[tuple[Memory, int, int]]:
     """Of an extent what lies in each memory that takes it, by its lower addresses."""
     for memory in MEMORIES:

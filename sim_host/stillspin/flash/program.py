@@ -43,8 +43,12 @@ class Program:
         return None
 
 
-def assemble(blocks: Iterable[Block], entry: int | None, kind: str, name: str) -> Program:
-    """A program of blocks as a file has them, in any order.
+Part = tuple[str, int, int, int | None]
+"""A section: its name, words, where it runs, and where it is loaded if it is."""
+
+
+def assemble(blocks: Iterable[Block], entry: int | None, kind: str, name: str, parts: Iterable[Part] = ()) -> Program:
+    """A program of blocks as a file has them, in any order; `parts` are its sections, to name those that overlap.
 
     Raises:
         InputError: two say something about one word, or there is none; `name` is the file's.
@@ -52,7 +56,7 @@ def assemble(blocks: Iterable[Block], entry: int | None, kind: str, name: str) -
     joined: list[Block] = []
     for block in sorted((block for block in blocks if block.words), key=lambda block: block.address):
         if joined and joined[-1].end > block.address:
-            raise InputError(f"{name}: defines word 0x{block.address:06X} twice; the file is damaged")
+            raise InputError(f"{name}: {_twice(block.address, parts)}")
         if joined and joined[-1].end == block.address:
             joined[-1] = Block(joined[-1].address, joined[-1].words + block.words)
         else:
@@ -60,3 +64,13 @@ def assemble(blocks: Iterable[Block], entry: int | None, kind: str, name: str) -
     if not joined:
         raise InputError(f"{name}: has nothing to load")
     return Program(tuple(joined), entry, kind)
+
+
+def _twice(address: int, parts: Iterable[Part]) -> str:
+    there = [name for name, words, _, load in parts if load is not None and load <= address < load + words]
+    if len(there) < 2:
+        return f"defines word 0x{address:06X} twice; the file is damaged"
+    return (
+        f"its sections {' and '.join(there)} are loaded to the same place, 0x{address:06X}: the linker command file "
+        "has to give each its own"
+    )

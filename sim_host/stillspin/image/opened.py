@@ -17,12 +17,12 @@ from stillspin.cases.profile import Profile
 from stillspin.core import NativeCore, Plant
 from stillspin.core_board import NativeBoard
 from stillspin.counted import counted
-from stillspin.errors import CampaignError
-from stillspin.flash import names
+from stillspin.errors import CampaignError, InputError
+from stillspin.flash import names, sections
 from stillspin.flash.files import read_boot_rom, read_program
 from stillspin.flash.names import Names
 from stillspin.flash.program import Program
-from stillspin.image import remarks, runaway, unmodelled
+from stillspin.image import foreign, remarks, runaway, unmodelled
 
 SLICE = 1_000_000
 """Ticks between two looks at a board that runs to a place."""
@@ -42,9 +42,11 @@ class Image:
     """What a user has to know of the file, in words."""
     rom: core.Blocks = field(default_factory=list)
     """Words of the boot ROM."""
+    foreign: str = ""
+    """Why an F2808 does not run it, in words."""
 
 
-def read(file: Path, rom: Path | None = None) -> Image:
+def look(file: Path, rom: Path | None = None) -> Image:
     """A file with what it says of itself, and the file of the boot ROM's words that goes with it.
 
     Raises:
@@ -53,7 +55,20 @@ def read(file: Path, rom: Path | None = None) -> Image:
     program = read_program(file)
     there = names.read(file)
     blocks = [(block.address, list(block.words)) for block in read_boot_rom(rom)] if rom else []
-    return Image(file, program, there, [*there.damage, *remarks.of(file, program)], blocks)
+    not_here = foreign.said(program, sections.read(file, program), there)
+    return Image(file, program, there, [*there.damage, *remarks.of(file, program)], blocks, not_here)
+
+
+def read(file: Path, rom: Path | None = None) -> Image:
+    """The same of one that is to run.
+
+    Raises:
+        InputError: also where it has code for a C28x with more than an F2808 has.
+    """
+    image = look(file, rom)
+    if image.foreign:
+        raise InputError(f"{file}: {image.foreign}")
+    return image
 
 
 def power_on(image: Image, profile_name: str, motor: str, seed: int) -> NativeBoard:
