@@ -14,7 +14,8 @@ a feature.toml, or a path from where the list is. What a feature.toml may say:
     words       kinds of words (text/word_list.h) that are its own
     instead     by source outside of the folder that only this feature has a use for: what an image without it has
     rows        by table: what stands there, with its place: a number, smaller ones come first; commands of the console
-                have theirs from its list
+                have theirs from its list. What console and link alone ask for is dropped without them, and with it what
+                a feature's commands*.c and requests*.c are for
 
 What has not changed is not written again. FOLDER belongs into the include path before the tree.
 """
@@ -33,7 +34,10 @@ import word_code
 
 ROOT = pack_text.ROOT
 EDITIONS, FEATURE = "firmware/editions", "feature.toml"
-PARAMETERS, SIGNALS = "firmware/dictionary/parameter_list.h", "firmware/dictionary/signal_list.h"
+PARAMETERS, SIGNALS = (
+    "firmware/dictionary/parameter_list.h",
+    "firmware/dictionary/signal_list.h",
+)
 FAULTS = "firmware/dictionary/fault_list.h"
 KINDS, KIND = "firmware/text/catalogue.h", re.compile(r"CATALOGUE_([A-Z]+) = (\d+)")
 TEXTS, CMAKE = "packed_text_table.c", "composed.cmake"
@@ -49,6 +53,7 @@ class Table:
     least: int = 0  # places at least
     arrays: bool = False  # its rows are arrays
     prefix: str = "edition_"
+    asked_by: str = ""  # the feature that alone asks it: without that one it has no rows
 
     def text(self, name: str, rows: list[tuple[int, str]]) -> str:
         """Its definition, of rows with their places."""
@@ -68,7 +73,13 @@ class Table:
 SERVICE, STATUS = "firmware/interfaces/service.h", "firmware/api/status.h"
 COMMANDS = [row[0] for row in pack_text.rows((ROOT / "firmware/console/command_list.h").read_text("utf-8"), "COMMAND")]
 TABLES = {
-    "position_sources": Table("const position_source_t", "firmware/interfaces/source.h", "places", 9, prefix=""),
+    "position_sources": Table(
+        "const position_source_t",
+        "firmware/interfaces/source.h",
+        "places",
+        9,
+        prefix="",
+    ),
     "drive_states": Table("const state_t", "firmware/interfaces/state.h", "places", 8, prefix=""),
     "start_phases": Table("const phase_t", "firmware/start/phases.h", "places", 9, prefix=""),
     "phase_control": Table("const phase_control_t", "firmware/interfaces/phase_control.h", "one"),
@@ -77,10 +88,21 @@ TABLES = {
     "works": Table("work_t", SERVICE),
     "watch": Table("watch_t", SERVICE, "one"),
     "status_updates": Table("service_t", STATUS),
-    "requests": Table("const request_row_t", "firmware/link/request_rows.h", arrays=True),
-    "commands": Table("command_function_t", "firmware/console/commands.h", "places", len(COMMANDS)),
-    "status_lines": Table("const status_line_t", STATUS),
-    "text_port": Table("const text_port_t", "firmware/interfaces/text_port.h", "one"),
+    "requests": Table(
+        "const request_row_t",
+        "firmware/link/request_rows.h",
+        arrays=True,
+        asked_by="link",
+    ),
+    "commands": Table(
+        "command_function_t",
+        "firmware/console/commands.h",
+        "places",
+        len(COMMANDS),
+        asked_by="console",
+    ),
+    "status_lines": Table("const status_line_t", STATUS, asked_by="console"),
+    "text_port": Table("const text_port_t", "firmware/interfaces/text_port.h", "one", asked_by="link"),
     "interlocks": Table("interlock_t", "firmware/mode/interlock.h"),
     "current_shares": Table("current_share_t", "firmware/mode/interlock.h"),
 }
@@ -119,6 +141,13 @@ class Edition:
     name: str
     file: Path
     features: tuple[Feature, ...]
+
+    def rows(self, table: str) -> list[tuple[Feature, list[tuple[int, str]]]]:
+        """What stands in a table: the features that have rows in it, and these with their places."""
+        asked_by = TABLES[table].asked_by
+        if asked_by and asked_by not in {feature.name for feature in self.features}:
+            return []
+        return [(feature, own) for feature in self.features if (own := feature.places(table))]
 
 
 def feature_of(name: str, folder: Path) -> Feature:
@@ -164,7 +193,12 @@ def read_edition(name: str, root: Path = ROOT) -> Edition:
         if said:
             inside = root / "firmware" / said
             outside = file.parent / said
-            features.append(feature_of(said, outside if not inside.is_dir() and outside.is_dir() else inside))
+            features.append(
+                feature_of(
+                    said,
+                    outside if not inside.is_dir() and outside.is_dir() else inside,
+                )
+            )
     here = {feature.name for feature in features}
     for feature in features:
         if missing := [need for need in feature.needs if need not in here]:
@@ -181,16 +215,19 @@ def table_text(name: str, edition: Edition, root: Path) -> str:
     table = TABLES[name]
     rows: list[tuple[int, str]] = []
     headers = {table.header}
-    for feature in edition.features:
-        own = feature.places(name)
+    for feature, own in edition.rows(name):
         rows += own
-        if own:
-            headers |= {header_of(feature, header, root) for header in feature.headers}
+        headers |= {header_of(feature, header, root) for header in feature.headers}
     rows.sort()
     for (place, row), (next_place, next_row) in pairwise(rows):
         if place == next_place or table.form == "one":
             raise ValueError(f"{edition.file}: {row} and {next_row} want the same place in {name}")
-    lines = [f"// Made by toolchain/compose.py: {name} of the edition {edition.name}.", "", "#include <stddef.h>", ""]
+    lines = [
+        f"// Made by toolchain/compose.py: {name} of the edition {edition.name}.",
+        "",
+        "#include <stddef.h>",
+        "",
+    ]
     lines += [f'#include "{header}"' for header in sorted(headers)]
     return "\n".join([*lines, "", table.text(name, rows)])
 
@@ -232,9 +269,21 @@ def left_out_text(edition: Edition, root: Path) -> str:
     try:
         mask = sum(1 << int(kinds[word]) for feature in gone for word in feature.words)
         tables = [
-            rows("parameters", (number for feature in gone for number in feature.parameters), parameters),
-            rows("signals", (name for feature in gone for name in feature.signals), signals),
-            rows("faults", (number for feature in gone for number in feature.faults), faults),
+            rows(
+                "parameters",
+                (number for feature in gone for number in feature.parameters),
+                parameters,
+            ),
+            rows(
+                "signals",
+                (name for feature in gone for name in feature.signals),
+                signals,
+            ),
+            rows(
+                "faults",
+                (number for feature in gone for number in feature.faults),
+                faults,
+            ),
         ]
     except (KeyError, ValueError) as error:
         raise ValueError(f"{FEATURE}: {error}") from error
@@ -261,7 +310,8 @@ def needless_texts(edition: Edition, root: Path) -> set[str]:
     found = {f"TEXT_PARAMETER_{name}" for name in parameters}
     found |= {f"TEXT_SIGNAL_{name}" for feature in gone for name in feature.signals}
     found |= {f"TEXT_{what}_{number}" for feature in gone for number in feature.faults for what in ("FAULT", "REMEDY")}
-    commands = [COMMANDS[place] for feature in gone for place, _ in feature.places("commands")]
+    answered = {COMMANDS[place] for _, own in edition.rows("commands") for place, _ in own}
+    commands = [name for name in COMMANDS if name not in answered]
     found |= {f"TEXT_COMMAND_{what}{name}" for name in commands for what in ("", "ARGUMENTS_")}
     kinds = tuple(f"TEXT_{word}_" for feature in gone for word in feature.words)
     kinds += tuple(f"TEXT_HELP_{name}_" for name in commands)
@@ -318,7 +368,13 @@ def write_for_cmake(folder: Path, name: str) -> None:
     sources = write(folder, name)
     known = {feature.name for feature in features}
     outside = [feature for feature in edition.features if feature.name not in known]
-    files = [Path(__file__), Path(pack_text.__file__), Path(word_code.__file__), edition.file, *pack_text.files(ROOT)]
+    files = [
+        Path(__file__),
+        Path(pack_text.__file__),
+        Path(word_code.__file__),
+        edition.file,
+        *pack_text.files(ROOT),
+    ]
     files += [feature.folder / FEATURE for feature in (*features, *outside)]
     text = set_list("composed_sources", (path.resolve().as_posix() for path in sources))
     text += set_list("composed_from", (path.resolve().as_posix() for path in files))

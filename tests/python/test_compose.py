@@ -12,6 +12,7 @@ sys.path.insert(0, str(ROOT / "toolchain"))
 
 import compose  # noqa: E402
 
+SPOKEN = {"commands", "status_lines", "text_port", "requests"}
 EDITIONS = sorted(path.stem for path in (ROOT / compose.EDITIONS).glob("*.txt"))
 
 
@@ -70,6 +71,34 @@ def test_a_table_has_the_rows_of_the_edition_in_their_order(tmp_path: Path) -> N
     assert rows(compose.table_text("resets", compose.read_edition(str(backwards)), ROOT)) == [
         row for row in rows(resets) if row.startswith(("scope", "store", "board", "NULL"))
     ]
+
+
+QUIET = "drive\nsources/observer\nstart\nstart/flying\nstart/if_start\nboard\nstore\nscope\ncommissioning\n"
+
+
+def test_what_console_and_link_ask_for_goes_with_them(tmp_path: Path) -> None:
+    for said, asked in ((QUIET, set()), (f"{QUIET}link\n", {"requests"}), (f"{QUIET}link\nconsole\n", SPOKEN)):
+        edition = compose.read_edition(str(plant(tmp_path, "own.txt", said)))
+        assert {name for name in SPOKEN if edition.rows(name)} == asked
+        needless = compose.needless_texts(edition, ROOT)
+        assert ("TEXT_COMMAND_scope" in needless) == ("TEXT_HELP_start_1" in needless) == (asked != SPOKEN)
+        assert edition.rows("resets")
+
+
+def test_without_console_and_link_nothing_of_them_is_linked(tmp_path: Path) -> None:
+    """What main() leads to is taken out of the library, as the image takes it; the board's functions stay open."""
+    compose.write(tmp_path / "made", str(plant(tmp_path, "quiet.txt", QUIET)))
+    files = [path.as_posix() for path in (tmp_path / "made").glob("*.c")]
+    subprocess.run(["cc", "-c", f"-I{tmp_path / 'made'}", f"-I{ROOT}", *files], cwd=tmp_path, check=True)
+    library = ROOT / "build/release/firmware/libstillspin_firmware.a"
+    whole, objects = tmp_path / "whole.o", sorted(map(str, tmp_path.glob("*.o")))
+    subprocess.run(["ld", "-r", "-u", "firmware_main", "-o", whole, *objects, library], check=True)
+    found = subprocess.run(["nm", whole], capture_output=True, text=True, check=True).stdout
+    defined = set(re.findall(r"^\w+ [TtDdBbRr] (\w+)$", found, re.MULTILINE))
+    assert {"firmware_main", "store_service", "scope_step", "commissioning_state", "board_service"} <= defined
+    spoken = re.compile(r"(command|line|console|editor|request|link|stream|splitter|record)_\w+")
+    assert not {name for name in defined if spoken.fullmatch(name)}
+    assert not re.findall(r"^ +U (?!hal_)(\w*(?:command|console|edition|request)\w*)$", found, re.MULTILINE)
 
 
 def test_what_is_left_out_leaves_its_place_empty() -> None:

@@ -1,6 +1,7 @@
 """What a feature includes, calls and looks up is of features that it needs: an edition that composes has no hole.
 
-The folders that are no feature are in every edition and count as the drive's, which every edition has.
+The folders that are no feature are in every edition and count as the drive's, which every edition has. What a feature
+says to console and link is in files of its own, which nobody else in it uses: where there is no console, they are out.
 """
 
 import re
@@ -20,6 +21,7 @@ from checks.preprocessor import directives  # noqa: E402
 DRIVE = "drive"
 PROGRAMS = ("firmware/flash_kernel/", "firmware/lamp/")  # of their own
 VALUES = "firmware/dictionary/parameters.h"
+SPEAKS = {"console": re.compile(r"/(sub_)?commands\w*\.[ch]$"), "link": re.compile(r"/requests\w*\.[ch]$")}
 ASKED = {(DRIVE, "sources/flux")}  # drive/position.c asks whether there is one
 LOOKED_UP = re.compile(r"\bposition_sources\[(POSITION_\w+)\]")
 
@@ -46,6 +48,8 @@ def uses(root: Path, features: list[compose.Feature]) -> dict[tuple[str, str], s
 
     def note(source: str, target: str | None, where: str) -> None:
         user = feature_at(source, names)
+        if target in SPEAKS and SPEAKS[target].search(source):
+            return
         if user and target and user != target:
             found.setdefault((user, target), f"{source}: {where}")
 
@@ -100,8 +104,7 @@ def test_the_uses_that_there_are_are_seen() -> None:
     """By call, by include, by a place of the table, and of the floors, which are the drive's."""
     found = uses(ROOT, compose.all_features())
     assert {
-        ("can", "console"),
-        ("scope", "link"),
+        ("can", "link"),
         ("sources/paper", "sources/observer"),
         ("commissioning", "board"),
         (DRIVE, "sources/observer"),
@@ -126,6 +129,11 @@ def test_a_need_that_nobody_states_is_found(house: Path, feature: str) -> None:
             "firmware/board/planted.c",
             "void planted(void) { scope_step(); }",
             ("board", "scope"),
+        ),
+        (
+            "firmware/scope/planted.c",
+            "void planted(void) { line_end(); }",
+            ("scope", "console"),
         ),
         (
             "firmware/link/planted.c",
