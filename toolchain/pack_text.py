@@ -25,7 +25,7 @@ LISTS = (
     ("firmware/dictionary/fault_list.h", "FAULT", 3, "TEXT_REMEDY_{0}"),
     ("firmware/console/command_list.h", "COMMAND", 2, "TEXT_COMMAND_{0}"),
     ("firmware/console/help_list.h", "HELP", 2, "TEXT_HELP_{0}_{1}"),
-    ("firmware/*/phrase_list.h", "PHRASE", 1, "SAY_{0}"),
+    ("firmware/**/phrase_list.h", "PHRASE", 1, "SAY_{0}"),
     ("firmware/dictionary/unit_list.h", "UNIT", 1, "TEXT_UNIT_{0}"),
     ("firmware/console/command_list.h", "COMMAND", 1, "TEXT_COMMAND_ARGUMENTS_{0}"),
     ("firmware/dictionary/parameter_list.h", "PARAMETER", 1, "TEXT_PARAMETER_NAME_{1}"),

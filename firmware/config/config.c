@@ -102,7 +102,7 @@ static bool load_machine(drive_config_t* c) {
 // Two neighbouring active vectors are far from the mean voltage, and what the model's inductances lack would stand for
 // an EMF: who asks for pulses of his own has the rest of the period looked at, too.
 static uint16_t windows_wanted(const parameters_t* p) {
-  return (p->excitation == EXCITATION_BY_SOURCE) ? drive_source_wanted()->windows : SVPWM_WINDOWS;
+  return (p->excitation == EXCITATION_BY_SOURCE) ? drive_source_selected()->windows : SVPWM_WINDOWS;
 }
 
 static bool load_modulation(drive_config_t* c) {
@@ -142,7 +142,7 @@ static bool load_control(drive_config_t* c) {
   const int32_t sixth_q30 = q_div((p->inductance_q - p->inductance_d) / 6, p->inductance_q + p->inductance_d, 30);
   c->salient_bpp_q4 = qc_mul_sat(q_div(sixth_q30, c->nameplate.emf_q16, 20), TURNS_Q32_PER_RAD, 30);
   c->salient_q20 = p->saliency_current;
-  if (p->saliency_current == 0 || (drive_source_wanted()->traits & SOURCE_MEASURES) != 0u) c->salient_q20 = INT32_MAX;
+  if (p->saliency_current == 0 || drive_source_selected_has(SOURCE_MEASURES)) c->salient_q20 = INT32_MAX;
   c->hold_gain_q30 = q_div(p->position_hold, c->nameplate.periods_per_second, 22);
   c->hold_below_bpp = qc_mul_sat(HOLD_BELOW_RPM_Q16, c->bpp_per_rpm_q8, 24);
   const current_design_t current = {p->current_bandwidth, DRIVE_PERIOD_US, p->current_divider,
@@ -156,13 +156,6 @@ static bool load_control(drive_config_t* c) {
 // 1 / (time constant in turns), Q30, of a time in ms, Q8; 30 s means none.
 static int32_t share_per_slot_q30(int32_t time_q8) {
   return (time_q8 >= 30000L * 256L) ? 0 : q_div(256L * (int32_t)SCHEDULE_SLOTS, time_q8 * DRIVE_PERIODS_PER_MS, 30);
-}
-
-static bool load_blend(drive_config_t* c) {
-  const bool flux = (drive_source_wanted()->traits & SOURCE_HANDS_OVER) != 0u;
-  const int32_t low = flux ? parameters.flux_low : parameters.blend_low;
-  const int32_t high = flux ? parameters.flux_high : parameters.blend_high;
-  return blend_design(&c->blend, qc_mul_sat(low, c->bpp_per_rpm_q8, 24), qc_mul_sat(high, c->bpp_per_rpm_q8, 24));
 }
 
 // While the shaft is held the load is followed at once, five times as fast as at a crawl, and no step looked for.
@@ -210,7 +203,8 @@ static bool load_position(drive_config_t* c) {
   c->slopes.end_samples = HAL_ADC_END_SAMPLES;
   slopes_design(&c->slopes);
   c->volts_per_code_q16 = q_shr_round(p->link_full_scale, 12);
-  return load_blend(c);
+  return blend_design(&c->blend, qc_mul_sat(p->blend_low, c->bpp_per_rpm_q8, 24),
+                      qc_mul_sat(p->blend_high, c->bpp_per_rpm_q8, 24));
 }
 
 // Parameters as they are, by their places in the table.
@@ -222,30 +216,30 @@ static void load_values(config_values_t* v) {
   for (uint16_t k = 0; k < sizeof places / sizeof places[0]; k++) to[k] = parameter_at(places[k]);
 }
 
-static bool load_parts(drive_config_t* c) {
-  bool fits = true;
-  for (uint16_t k = 0; edition_config_parts[k] != NULL; k++) {
-    if (edition_config_parts[k]->make != NULL) fits = edition_config_parts[k]->make(c) && fits;
+static packed_text_t make_parts(drive_config_t* c) {
+  packed_text_t conflict = PACKED_NONE;
+  for (uint16_t k = 0; edition_config_parts[k] != NULL && conflict == PACKED_NONE; k++) {
+    if (edition_config_parts[k]->make != NULL) conflict = edition_config_parts[k]->make(c);
   }
-  return fits;
+  return conflict;
 }
 
-const drive_config_t* drive_config_make(void) {
-  static drive_config_t made;  // too large for the stack; the background level alone makes configurations
+static drive_config_t made;  // too large for the stack; the background level alone makes configurations
+
+packed_text_t drive_config_make(void) {
   clear(&made, sizeof made);
   load_values(&made.values);
-  const bool fits =
-      load_machine(&made) && load_modulation(&made) && load_control(&made) && load_position(&made) && load_parts(&made);
-  return fits ? &made : NULL;
+  const bool fits = load_machine(&made) && load_modulation(&made) && load_control(&made) && load_position(&made);
+  return fits ? make_parts(&made) : SAY_the_machine_s_parameters_are_too_extreme;
 }
 
-void drive_config_take(drive_config_t* c, const drive_config_t* made) {
-  *c = *made;
+void drive_config_take(drive_config_t* c) {
+  *c = made;
   for (uint16_t k = 0; edition_config_parts[k] != NULL; k++) edition_config_parts[k]->take();
 }
 
 bool drive_config_load(drive_config_t* c) {
-  const drive_config_t* const made = drive_config_make();
-  if (made != NULL) drive_config_take(c, made);
-  return made != NULL;
+  const bool fits = drive_config_make() == PACKED_NONE;
+  if (fits) drive_config_take(c);
+  return fits;
 }

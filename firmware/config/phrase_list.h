@@ -1,9 +1,8 @@
-// Why parameters do not fit together: PHRASE(name, text), see text/phrase_list.h.
+// Why parameters do not fit together, but for those of features: PHRASE(name, text), see text/phrase_list.h.
 
 PHRASE(position_source_is_not_in_this_edition, "this position_source is not in this edition of the firmware")
 PHRASE(inductance_q_must_be_at_least_inductance, "inductance_q must be at least inductance_d")
 PHRASE(blend_high_must_be_above_blend_low, "blend_high must be above blend_low")
-PHRASE(flux_high_must_be_above_flux_low, "flux_high must be above flux_low")
 PHRASE(window_maximum_must_be_at_least_window, "window_maximum must be at least window_minimum")
 PHRASE(link_maximum_must_be_above_link_minimum, "link_maximum must be above link_minimum")
 PHRASE(link_regulation_must_be_above_link_minimum,
@@ -19,16 +18,9 @@ PHRASE(speed_limit_is_too_high_with_the,
 PHRASE(weakening_limit_must_not_exceed_current_limi, "weakening_limit must not exceed current_limit")
 PHRASE(window_minimum_must_be_settle_time_4, "window_minimum must be settle_time + 4.5 us or more")
 PHRASE(0_65_pulse_time_must_be_settle, "0.65 x pulse_time must be settle_time + 4.5 us or more")
-PHRASE(position_source_1_needs_id_low_speed, "position_source 1 needs id_low_speed of at least 1 A")
 PHRASE(avv_needs_two_active_vectors, "AVV needs two active vectors: excitation 1, 2 or 3")
 PHRASE(hold_time_needs_excitation_2_3_or, "hold_time needs excitation 2, 3 or 5")
 PHRASE(lqq_n_inductance_q_must_be, "lqq_n x inductance_q must be at least ldd_n x inductance_d, n = 1 .. 4")
-PHRASE(current_law_1_needs_position_source_0, "current_law 1 needs position_source 0")
-PHRASE(100_us_must_be_a_whole_number, "100 us must be a whole multiple of slice_time")
-PHRASE(flux_beside_needs_position_source_0, "flux_beside needs position_source 0")
-PHRASE(start_method_1_needs_a_position_source,
-       "start_method 1 needs a position_source other than 0: the encoder has no zero yet")
-PHRASE(if_current_must_not_exceed_current_limit, "if_current must not exceed current_limit with start_method 1")
 PHRASE(current_bandwidth_must_not_exceed_2080_rad,
        "current_bandwidth must not exceed 2080 rad/s with current_divider 2")
 PHRASE(the_machine_s_parameters_are_too_extreme,

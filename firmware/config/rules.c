@@ -2,13 +2,10 @@
 
 #include "firmware/config/rules.h"
 
-#include <stddef.h>
-
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
 #include "firmware/text/packed_text.h"
-#include "hal/hal_pwm.h"
 #include "hal/qmath/qcall.h"
 
 #define SAMPLING_MIN_Q16 294912L         // 4.5 us: two bursts and the shortest useful time between them
@@ -30,13 +27,11 @@ static bool map_is_crossed(const parameters_t* p) {
   return false;
 }
 
-static packed_text_t broken_rule(void) {
+packed_text_t parameter_rule_broken(void) {
   const parameters_t* const p = &parameters;
-  const uint16_t source = drive_source_wanted()->traits;
   if (drive_source_is_left_out(p)) return SAY_position_source_is_not_in_this_edition;
   if (p->inductance_q < p->inductance_d) return SAY_inductance_q_must_be_at_least_inductance;
   if (p->blend_high <= p->blend_low) return SAY_blend_high_must_be_above_blend_low;
-  if (p->flux_high <= p->flux_low) return SAY_flux_high_must_be_above_flux_low;
   if (p->window_maximum < p->window_minimum) return SAY_window_maximum_must_be_at_least_window;
   if (p->link_maximum <= p->link_minimum) return SAY_link_maximum_must_be_above_link_minimum;
   if (p->link_regulation <= p->link_minimum || p->link_regulation > p->link_maximum - 65536L)
@@ -52,36 +47,18 @@ static packed_text_t broken_rule(void) {
   if (p->weakening_limit > p->current_limit) return SAY_weakening_limit_must_not_exceed_current_limi;
   if (p->window_minimum < p->settle_time + SAMPLING_MIN_Q16) return SAY_window_minimum_must_be_settle_time_4;
   if (p->pulse_time / 20 * 13 < p->settle_time + SAMPLING_MIN_Q16) return SAY_0_65_pulse_time_must_be_settle;
-  if ((source & SOURCE_ALTERNATES) != 0u && qc_abs_sat(p->id_low_speed) < 1048576L)
-    return SAY_position_source_1_needs_id_low_speed;
-  if ((p->excitation == 0 || p->excitation >= 4) && (source & (SOURCE_BESIDE | SOURCE_AVV_FIRST)) != 0u)
+  if ((p->excitation == 0 || p->excitation >= 4) && drive_source_selected_has(SOURCE_BESIDE | SOURCE_AVV_FIRST))
     return SAY_avv_needs_two_active_vectors;
   if (p->hold_time > 0 && p->excitation != 2 && p->excitation != 3 && p->excitation != 5)
     return SAY_hold_time_needs_excitation_2_3_or;
   if (map_is_crossed(p)) return SAY_lqq_n_inductance_q_must_be;
-  if (p->current_law == CURRENT_LAW_HYSTERESIS && (source & SOURCE_MEASURES) == 0u)
-    return SAY_current_law_1_needs_position_source_0;
-  if (HAL_PWM_PERIOD_TICKS % (uint32_t)q_shr_round(p->slice_time * 100, 16) != 0u)
-    return SAY_100_us_must_be_a_whole_number;
-  if (p->flux_beside > 0 && (source & SOURCE_MEASURES) == 0u) return SAY_flux_beside_needs_position_source_0;
-  if (p->start_method == 1 && (source & SOURCE_MEASURES) != 0u) return SAY_start_method_1_needs_a_position_source;
-  if (p->start_method == 1 && p->if_current > p->current_limit) return SAY_if_current_must_not_exceed_current_limit;
   if (p->current_bandwidth * (3 + p->current_divider) > 10400) return SAY_current_bandwidth_must_not_exceed_2080_rad;
   return PACKED_NONE;
 }
 
-packed_text_t drive_config_or_conflict(const drive_config_t** made) {
-  const packed_text_t broken = broken_rule();
-  if (broken != PACKED_NONE) return broken;
-  *made = drive_config_make();
-  return (*made != NULL) ? PACKED_NONE : SAY_the_machine_s_parameters_are_too_extreme;
-}
-
-// Without a frame for the configuration that nobody wants: the deepest way of the stack leads here.
 packed_text_t parameter_conflict(void) {
-  const packed_text_t broken = broken_rule();
-  if (broken != PACKED_NONE || drive_config_make() != NULL) return broken;
-  return SAY_the_machine_s_parameters_are_too_extreme;
+  const packed_text_t broken = parameter_rule_broken();
+  return (broken != PACKED_NONE) ? broken : drive_config_make();
 }
 
 // No interrupt reads the table, so nobody sees the value meanwhile.

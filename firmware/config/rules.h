@@ -11,7 +11,10 @@
 extern "C" {
 #endif
 
-/// Why the present parameters cannot be used together, one sentence; PACKED_NONE when they can.
+/// The rule of the drive's own that the present parameters break, one sentence; PACKED_NONE: none.
+packed_text_t parameter_rule_broken(void);
+/// Why the present parameters cannot be used together, one sentence; PACKED_NONE when they can, and the configuration
+/// of them is made (config.h).
 packed_text_t parameter_conflict(void);
 /// The same, were this parameter at that value.
 packed_text_t parameter_conflict_with(uint16_t id, int32_t raw);

@@ -4,6 +4,7 @@
 
 #include "firmware/api/status.h"
 #include "firmware/config/config.h"
+#include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/steps.h"
 #include "firmware/interfaces/config_part.h"
@@ -31,17 +32,16 @@ static void set_up_parts(void) {
 // configuration, so it may be read here without a lock; a start that is asked for meanwhile waits for the request to be
 // taken back.
 static void reload(void) {
-  const drive_config_t* fresh;
-  const packed_text_t conflict = drive_config_or_conflict(&fresh);
+  const packed_text_t conflict = parameter_conflict();
   const bool valid = conflict == PACKED_NONE;
   const uint16_t state = hal_irq_disable();
   hal_replay_work_begin(REPLAY_RELOADED);
   drive.request.reload = false;
-  drive_choose_source();
+  drive_select_source();
   drive.config_valid = valid;
   drive.conflict = conflict;
   drive.conflict_known = true;
-  if (valid) drive_config_take(&drive.config, fresh);
+  if (valid) drive_config_take(&drive.config);
   drive.control.current_limit_q20 = interlock_current_limit();
   drive_command_speed(drive_commanded_speed());  // in the units of the new configuration
   if (!drive_is_energised()) {

@@ -30,15 +30,25 @@ hysteresis_t hysteresis;
 
 static hysteresis_config_t config;
 
+static uint16_t made_slice_ticks;
+
+static packed_text_t make(drive_config_t* c) {
+  (void)c;
+  if (parameters.current_law == CURRENT_LAW_HYSTERESIS && !drive_source_selected_has(SOURCE_MEASURES))
+    return SAY_current_law_1_needs_position_source_0;
+  made_slice_ticks = (uint16_t)q_shr_round(parameters.slice_time * 100, 16);
+  return (HAL_PWM_PERIOD_TICKS % made_slice_ticks != 0u) ? SAY_100_us_must_be_a_whole_number : PACKED_NONE;
+}
+
 static void take(void) {
   config.band_q20 = parameters.hysteresis_band;
   // Three legs, 10 ms: 30 rises per kHz.
-  const int32_t rises = q_max(1, q_shr_round(parameters.hysteresis_frequency * 30, 16));
-  config.rises = (parameters.hysteresis_frequency != 0) ? rises : 0;
-  config.slice_ticks = (uint16_t)q_shr_round(parameters.slice_time * 100, 16);
+  config.rises = q_shr_round(parameters.hysteresis_frequency * 30, 16);
+  if (config.rises == 0 && parameters.hysteresis_frequency != 0) config.rises = 1;
+  config.slice_ticks = made_slice_ticks;
 }
 
-const config_part_t hysteresis_part = {NULL, take, NULL};
+const config_part_t hysteresis_part = {make, take, NULL};
 
 static uint16_t decide(uint16_t state, uint16_t leg_bit, int32_t lack, int32_t band) {
   if (lack > band) return (uint16_t)(state | leg_bit);

@@ -3,7 +3,7 @@
 #ifndef STILLSPIN_FIRMWARE_INTERFACES_CONFIG_PART_H
 #define STILLSPIN_FIRMWARE_INTERFACES_CONFIG_PART_H
 
-#include <stdbool.h>
+#include <stdint.h>
 
 struct drive_config;
 
@@ -12,8 +12,9 @@ struct drive_config;
 
 typedef struct {
   /// Makes them beside those in use, which an interrupt may read meanwhile, and may change what the drive's own
-  /// parameters have made. False where they do not fit together. Background level. NULL: `take` alone does it.
-  bool (*make)(struct drive_config* c);
+  /// parameters have made. PACKED_NONE, or why its parameters and the drive's do not fit together, a sentence
+  /// (text/packed_text.h). Background level. NULL: `take` alone does it.
+  uint16_t (*make)(struct drive_config* c);
   /// What was made last is in use from here on: with the rest of the configuration, between two control interrupts. The
   /// parameters are still those that it was made of.
   void (*take)(void);

@@ -35,7 +35,7 @@ typedef struct drive {
   bool conflict_known;  // of the parameters that the configuration was made of
   bool loading;         // by the background level: the store is being read, BOOT goes on
   drive_request_t request;
-  const position_source_t* source;  // by the parameter, chosen when that changes
+  const position_source_t* source;  // by the parameter, selected when that changes
   packed_text_t conflict;           // why they do not fit together, or PACKED_NONE
   drive_position_t position;
   drive_control_t control;
@@ -57,9 +57,11 @@ extern drive_t drive;
 
 /// What is made of the parameters is to be made anew.
 void drive_parameters_changed(void);
-void drive_choose_source(void);
-/// That of the parameter; the observer where this edition leaves that one out, and the drive does not start.
-const position_source_t* drive_source_wanted(void);
+void drive_select_source(void);
+/// The one that the parameter selects; the observer where this edition leaves that out, and the drive does not start.
+const position_source_t* drive_source_selected(void);
+/// Whether that has this trait.
+bool drive_source_selected_has(uint16_t trait);
 /// Whether this edition leaves out the one that these values name.
 bool drive_source_is_left_out(const parameters_t* p);
 

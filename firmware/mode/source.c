@@ -1,4 +1,4 @@
-// Which position source is chosen, by its parameter.
+// Which position source is selected, by its parameter.
 
 #include <stddef.h>
 
@@ -9,8 +9,10 @@ static const position_source_t* named(const parameters_t* p) { return position_s
 
 bool drive_source_is_left_out(const parameters_t* p) { return named(p) == NULL; }
 
-const position_source_t* drive_source_wanted(void) {
+const position_source_t* drive_source_selected(void) {
   return drive_source_is_left_out(&parameters) ? position_sources[POSITION_OBSERVER] : named(&parameters);
 }
 
-void drive_choose_source(void) { drive.source = drive_source_wanted(); }
+bool drive_source_selected_has(uint16_t trait) { return (drive_source_selected()->traits & trait) != 0u; }
+
+void drive_select_source(void) { drive.source = drive_source_selected(); }

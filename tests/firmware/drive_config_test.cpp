@@ -114,6 +114,7 @@ TEST_F(DriveConfig, AsManyWindowsAsWhoLooksAtThemWants) {
   for (const auto& k : cases) {
     if (position_sources[k.source] == nullptr) continue;
     parameters.position_source = k.source;
+    if (k.source == POSITION_PAPER) parameters.id_low_speed = raw(-1.0, 20);
     parameters.excitation = k.excitation;
     drive_config_t c = inside::config();
     EXPECT_TRUE(drive_config_load(&c));
@@ -244,6 +245,7 @@ TEST_F(DriveConfig, RandomSetsAreAcceptedConsistentOrRefused) {
       ASSERT_EQ(parameter_set(p.id, random_value(random, p, n % 2 == 0)), SET_OK)
           << stillspin::bench::text_of(parameter_name(&p));
     }
+    parameters.slice_time = raw(5.0, 16);  // by itself hardly any divides the period
     drive_config_t c = inside::config();
     if (!drive_config_load(&c)) {
       ++refused;

@@ -32,7 +32,7 @@ class Units : public Drive {
     (void)made();
     return flux_config;
   }
-  static bool refused() { return drive_config_make() == nullptr; }
+  static bool refused() { return drive_config_make() != PACKED_NONE; }
 };
 
 void expect_near_share(double value, double wanted, double share) {

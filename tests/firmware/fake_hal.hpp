@@ -122,7 +122,7 @@ inline void use_parameters() {
 #undef USE
   drive_config_t beside = inside::config();  // a part may change what the drive's own parameters have made
   for (const config_part_t* const* part = edition_config_parts; *part != nullptr; ++part) {
-    const bool fits = (*part)->make == nullptr || (*part)->make(&beside);
+    const bool fits = (*part)->make == nullptr || (*part)->make(&beside) == PACKED_NONE;
     if (fits) (*part)->take();
   }
 }
@@ -134,6 +134,7 @@ inline bool has_source(std::int32_t source) { return position_sources[source] !=
 inline void use_source(std::int32_t source) {
   ASSERT_TRUE(has_source(source)) << "a test that needs it says so: edition.hpp";
   parameters.position_source = source;
+  if (source == POSITION_PAPER && parameters.id_low_speed == 0) parameters.id_low_speed = raw(-1.0, 20);
   inside::source() = position_sources[source];
 }
 
@@ -188,7 +189,7 @@ class Drive : public ::testing::Test {
     make_ready();
     drive_command_start();
     for (int n = 0; n < 350 && inside::state() != DRIVE_RUN; ++n) period();
-    ASSERT_EQ(inside::state(), DRIVE_RUN);
+    ASSERT_EQ(inside::state(), DRIVE_RUN) << inside::fault();
     forget_windows();
     inside::speed_ramp().value = 0;
     periods(20);

@@ -26,6 +26,7 @@ class Hysteresis : public Drive {
   void SetUp() override {
     NEEDS("hysteresis");
     Drive::SetUp();
+    use_source(POSITION_ENCODER);
     parameters.current_law = 1;
     inside::config_valid() = drive_config_load(&inside::config());
     make_run();

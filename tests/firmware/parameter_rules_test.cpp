@@ -51,7 +51,6 @@ TEST_F(ParameterRules, EachHoldsUpToItsLimit) {
   const Rule rules[] = {
       {&parameters_t::inductance_q, p.inductance_d, p.inductance_d - 1, "inductance_q must be"},
       {&parameters_t::blend_high, p.blend_low + raw(1.0, 16), p.blend_low, "blend_high"},
-      {&parameters_t::flux_high, p.flux_low + 1, p.flux_low, "flux_high"},
       {&parameters_t::window_maximum, p.window_minimum, p.window_minimum - 1, "window_maximum"},
       {&parameters_t::link_regulation, p.link_minimum + 1, p.link_minimum, "link_regulation"},
       {&parameters_t::link_regulation, p.link_maximum - 65536, p.link_maximum - 65535, "link_regulation"},
@@ -67,7 +66,6 @@ TEST_F(ParameterRules, EachHoldsUpToItsLimit) {
       {&parameters_t::window_minimum, p.settle_time + raw(4.5, 16), p.settle_time + raw(4.5, 16) - 1,
        "window_minimum must be settle_time"},
       {&parameters_t::speed_limit, raw(15000.0, 8), raw(15000.0, 8) + 1, "1 kHz"},
-      {&parameters_t::slice_time, raw(10.0, 16), raw(11.0, 16), "slice_time"},
   };
   for (const Rule& rule : rules) {
     parameters = p;
@@ -142,24 +140,51 @@ TEST_F(ParameterRules, AHoldNeedsOppositeWindows) {
   }
 }
 
-TEST_F(ParameterRules, WhatNeedsTheEncoderAndWhatMayNotHaveIt) {
+TEST_F(ParameterRules, HysteresisNeedsTheEncoderAndWholeSlices) {
+  NEEDS("hysteresis");
   for (const int source : {0, 4}) {
     parameters.position_source = source;
-    SCOPED_TRACE(source);
-    const auto needs_it = [&](const char* words) { source == 0 ? keeps() : refuses(words); };
     parameters.current_law = 1;
-    needs_it("current_law 1");
+    source == 0 ? keeps() : refuses("current_law 1");
     parameters.current_law = 0;
-    parameters.flux_beside = 1;
-    needs_it("flux_beside");
-    parameters.flux_beside = 0;
-    parameters.start_method = 1;
-    source == 0 ? refuses("start_method 1 needs") : keeps();
-    parameters.start_method = 0;
+    keeps();
   }
+  parameters.slice_time = raw(10.0, 16);
+  keeps();
+  parameters.slice_time = raw(11.0, 16);
+  refuses("slice_time");
+}
+
+TEST_F(ParameterRules, AFluxThatLooksOnNeedsTheEncoder) {
+  NEEDS("sources/flux");
+  for (const int source : {0, 4}) {
+    parameters.position_source = source;
+    parameters.flux_beside = 1;
+    source == 0 ? keeps() : refuses("flux_beside");
+    parameters.flux_beside = 0;
+    keeps();
+  }
+  parameters.flux_high = parameters.flux_low + 1;
+  keeps();
+}
+
+TEST_F(ParameterRules, AVectorsStartDoesNotBeginWithTheEncoder) {
+  NEEDS("start/if_start");
+  parameters.start_method = 1;
+  parameters.position_source = 0;
+  refuses("start_method 1 needs");
+  parameters.position_source = 4;
+  keeps();
+}
+
+// What an edition has not has nothing against the rest: values that another one saved are kept as they are.
+TEST_F(ParameterRules, AFeatureThatIsLeftOutHasNoRules) {
+  parameters.flux_high = parameters.flux_low;
+  missing_of({"sources/flux"}).empty() ? refuses("flux_high") : keeps();
 }
 
 TEST_F(ParameterRules, TheVectorsCurrentIsLimitedWhereThereIsOne) {
+  NEEDS("start/if_start");
   parameters.if_current = parameters.current_limit + 1;
   keeps();
   parameters.start_method = 1;

@@ -25,7 +25,8 @@ TEST_F(Sources, AFluxLooksOnFromItsLowerSpeedOn) {
   for (const int rpm : {-120, -80, 80, 120}) {
     run_with(POSITION_ENCODER);
     parameters.flux_low = raw(100.0, 16);
-    use_parameters();
+    parameters.flux_beside = 1;
+    ASSERT_TRUE(drive_config_load(&inside::config()));
     const estimator_output_t there = {kThere, 0, 0, 32767}, truth = {kHere, bpp_of(rpm), 33, 32767};
     flux_source_follow(&drive, &there);
     const estimator_input_t in = {&inside::model(), inside::windows(), 0, 0, false, false, false, nullptr};

@@ -3,7 +3,7 @@
 
 #include <stddef.h>
 
-#include "firmware/config/config.h"
+#include "firmware/config/rules.h"
 #include "firmware/interfaces/config_part.h"
 #include "firmware/mode/mode.h"
 #include "firmware/sources/encoder/encoder.h"
@@ -15,7 +15,6 @@
 const config_part_t* const edition_config_parts[] = {&flux_part, &encoder_part, &if_ramp_part, &paper_part, NULL};
 
 void prove_configuration(void) {
-  const drive_config_t* made = 0;
   any_parameters();
-  (void)drive_config_or_conflict(&made);
+  (void)parameter_conflict();
 }

@@ -148,8 +148,8 @@ static void any_made(drive_config_t* c) {
 #undef TAKE
 }
 
-void drive_config_take(drive_config_t* c, const drive_config_t* made) {
-  *c = *made;
+void drive_config_take(drive_config_t* c) {
+  any_made(c);
   any_parts();
 }
 
@@ -161,12 +161,7 @@ bool drive_config_load(drive_config_t* c) {
   return any_bool();
 }
 
-packed_text_t drive_config_or_conflict(const drive_config_t** made) {
-  static drive_config_t fresh;
-  any_made(&fresh);
-  *made = &fresh;
-  return any_bool() ? PACKED_NONE : any_up_to(PACKED_NONE - 1u);
-}
+packed_text_t parameter_conflict(void) { return any_bool() ? PACKED_NONE : any_up_to(PACKED_NONE - 1u); }
 
 static void one_period(void) {
   if (any_bool()) any_parameters();

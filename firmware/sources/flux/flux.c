@@ -31,7 +31,6 @@ flux_observer_config_t flux_config;
 int32_t flux_observability_q20;
 
 static flux_observer_config_t made;
-static int32_t beside_from_bpp, made_beside_from_bpp;  // beside a source that is right: from here on
 
 void flux_reset(void) { flux_observability_q20 = 0; }
 
@@ -48,12 +47,15 @@ static void narrow_band(dead_time_config_t* c) {
   dead_time_design(c);
 }
 
-static bool make(drive_config_t* c) {
+static packed_text_t make(drive_config_t* c) {
   const parameters_t* const p = &parameters;
-  const bool is_selected = method() >= 0;
+  if (p->flux_high <= p->flux_low) return SAY_flux_high_must_be_above_flux_low;
+  if (p->flux_beside > 0 && !drive_source_selected_has(SOURCE_MEASURES)) return SAY_flux_beside_needs_position_source_0;
+  const int32_t selected = method();
+  const bool is_selected = selected >= 0;
   if (is_selected) narrow_band(&c->dead_time);
   flux_observer_config_t* const f = &made;
-  f->method = (flux_method_t)q_max(method(), FLUX_CONV);
+  f->method = (flux_method_t)(is_selected ? selected : FLUX_CONV);
   f->cutoff_q30 = q_mul(p->flux_cutoff, CONFIG_PER_PERIOD_Q20, 20);
   f->bandwidth_q30 = q_mul(p->flux_bandwidth, CONFIG_PER_PERIOD_Q20, 20);
   f->is_plain = (p->flux_plain & PAPER_LOW_PASS) != 0;
@@ -67,14 +69,13 @@ static bool make(drive_config_t* c) {
   f->adaptation.magnet_q30 = ((p->flux_adapt & LEARN_MAGNET) != 0) ? MAGNET_SHARE_Q30 : 0;
   f->adaptation.current_q24 = CURRENT_LEAST_Q24;
   f->adaptation.lowest_bpp = LEARNING_BPP;
-  made_beside_from_bpp = qc_mul_sat(p->flux_low, c->bpp_per_rpm_q8, 24);
-  return !is_selected || flux_observer_config_valid(f, &c->nameplate);
+  const bool fits = !is_selected || (blend_design(&c->blend, qc_mul_sat(p->flux_low, c->bpp_per_rpm_q8, 24),
+                                                  qc_mul_sat(p->flux_high, c->bpp_per_rpm_q8, 24)) &&
+                                     flux_observer_config_valid(f, &c->nameplate));
+  return fits ? PACKED_NONE : SAY_the_machine_s_parameters_are_too_extreme;
 }
 
-static void take(void) {
-  flux_config = made;
-  beside_from_bpp = made_beside_from_bpp;
-}
+static void take(void) { flux_config = made; }
 
 const config_part_t flux_part = {make, take, NULL};
 
@@ -144,7 +145,7 @@ estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, c
 }
 
 estimator_output_t flux_source_look_on(drive_t* d, const estimator_input_t* in, const estimator_output_t* truth) {
-  if (q_abs_sat(truth->speed_bpp) >= beside_from_bpp) return step(d, in, false);
+  if (q_abs_sat(truth->speed_bpp) >= d->config.blend.low_bpp) return step(d, in, false);
   flux_source_follow(d, truth);
   return *truth;
 }

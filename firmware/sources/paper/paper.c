@@ -8,8 +8,10 @@
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
 #include "firmware/sources/sources.h"
+#include "hal/qmath/qcall.h"
 
 #define PER_PERIOD2_Q18 11258999L  // rad/s^2 (Q8) to rad per period^2 (Q40)
+#define AMPERE_Q20 1048576L
 #define LONG_ZERO_BY_TURNS 16u     // of zvv_terms, beside those of zvv.h
 #define ZVV_PERIODS_OF_MS 0x02A5u  // whose windows it has then: 0, 2, 5, 7, 9
 
@@ -20,13 +22,14 @@ static zvv_config_t made;
 
 void paper_reset(void) { clear(&paper_zvv, sizeof paper_zvv); }
 
-static bool make(drive_config_t* c) {
+static packed_text_t make(drive_config_t* c) {
   (void)c;
   const parameters_t* const p = &parameters;
   made.kp_q30 = q_mul(p->zvv_proportional, CONFIG_PER_PERIOD_Q20, 20);
   made.ki_q40 = q_mul(p->zvv_integral, PER_PERIOD2_Q18, 18);
   made.terms = (uint16_t)p->zvv_terms;
-  return true;
+  const bool lacks_current = drive_source_selected_has(SOURCE_ALTERNATES) && qc_abs_sat(p->id_low_speed) < AMPERE_Q20;
+  return lacks_current ? SAY_position_source_1_needs_id_low_speed : PACKED_NONE;
 }
 
 static void take(void) { paper_config = made; }

@@ -10,12 +10,16 @@ if_start_config_t if_ramp_config;
 
 static if_start_config_t made;
 
-static bool make(drive_config_t* c) {
+static packed_text_t make(drive_config_t* c) {
   const parameters_t* const p = &parameters;
   const if_start_parameters_t wanted = {
       p->if_current, p->if_align * DRIVE_PERIODS_PER_MS, qc_mul_sat(p->if_acceleration, c->bpp_per_rpm_q8, 16) / 10000,
       qc_mul_sat(p->if_speed, c->bpp_per_rpm_q8, 16), p->if_time * DRIVE_PERIODS_PER_MS};
-  return if_start_design(&made, &c->nameplate, &wanted) || p->start_method == 0;
+  const bool fits = if_start_design(&made, &c->nameplate, &wanted);
+  if (p->start_method == 0) return PACKED_NONE;
+  if (drive_source_selected_has(SOURCE_MEASURES)) return SAY_start_method_1_needs_a_position_source;
+  if (p->if_current > p->current_limit) return SAY_if_current_must_not_exceed_current_limit;
+  return fits ? PACKED_NONE : SAY_the_machine_s_parameters_are_too_extreme;
 }
 
 static void take(void) { if_ramp_config = made; }
