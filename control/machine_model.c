@@ -140,6 +140,19 @@ static bool unsaturated(machine_model_t* m) {
   return machine_model_saturate(m, &flat);
 }
 
+// One by one: a constant to copy would be as long as the memory itself.
+static void forget_trim(machine_trim_t* t) {
+  t->mean_q30 = 0;
+  t->half_q30 = 0;
+  t->ydd_q24 = 0;
+  t->yqq_q24 = 0;
+  t->ydq_q24 = 0;
+  t->psi_share_q24 = ONE_Q24;
+  t->rs_q24 = 0;
+  t->psi_q16 = 0;
+  t->psi_variance_q32 = MACHINE_PSI_VARIANCE_Q32;
+}
+
 bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   if (!parameters_valid(p)) return false;
   m->nominal_rs_q24 = p->rs_q24;
@@ -154,8 +167,7 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   m->emf_q16 = q_div(p->flux_q28, m->period_q30, 18);
   m->torque_q24 = q_div(3 * p->pole_pairs * (p->flux_q28 / 16), 2, 0);
   m->reluctance_q24 = q_div(3 * p->pole_pairs * ((p->ld_q30 - p->lq_q30) / 64), 2, 0);
-  static const machine_trim_t none = {0, 0, 0, 0, 0, ONE_Q24, 0, 0, MACHINE_PSI_VARIANCE_Q32};
-  m->trim = none;
+  forget_trim(&m->trim);
   // p T^2 / (2 pi J) turns per period^2 and N m; T^2 2^32 / (2 pi) = period_us^2 * 6.83565e-4, here as Q22.
   const int32_t per_torque_q22 = p->period_us * p->period_us * 2867L;
   m->accel_q12 = qc_mul_sat(q_div(per_torque_q22, p->inertia_q24, 14), 2 * p->pole_pairs, 1);

@@ -14,9 +14,24 @@
 #define HIGHEST_Q24 (ONE_Q24 / 2 * 5)  // 0.4 times
 #define BASE_SHIFT 4u
 
+// One by one: a constant to copy would be as long as the memory itself.
 void inertia_match_reset(inertia_match_t* s) {
-  static const inertia_match_t fresh = {.ratio_q24 = ONE_Q24};
-  *s = fresh;
+  s->ratio_q24 = ONE_Q24;
+  s->phase = INERTIA_REST;
+  s->ms = 0;
+  s->quiet_ms = 0;
+  s->reference_bpp = 0;
+  s->base_q8 = 0;
+  s->start_base_q8 = 0;
+  s->before_q24 = 0;
+  s->mean_q8 = 0;
+  s->speed0_bpp = 0;
+  s->gained_bpp = 0;
+  s->last_gained_bpp = 0;
+  s->expected = 0;
+  s->turned = 0;
+  s->next = 0;
+  s->angle_bam = 0;
 }
 
 static void enter(inertia_match_t* s, inertia_phase_t phase) {

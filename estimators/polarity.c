@@ -2,21 +2,30 @@
 
 #include "hal/qmath/qcall.h"
 
-#define HALF (POLARITY_SEGMENT / 2)
 #define PAUSES 6
 #define PASSES_MAX 6
+#define TENS_MAX 12
 #define SIGMA_MIN_Q8 (4L * 256L)
-#define RESPONSE_MAX 32  // quarters of what was expected
+#define RESPONSE_MAX 32          // quarters of what was expected
+#define ACCEL_MOST_Q8 19088743L  // 10 degrees in 40 periods; beyond that the current is visibly off the true q-axis
+#define ACCEL_LEAST_Q8 2863311L  // 1.5 degrees in 40 periods
 
 // Sign of the current and weight of the angle in the segments of a pattern.
 static const int16_t drive_sign[POLARITY_SEGMENTS] = {0, 1, -1, 0, -1, 1, 0};
 static const int16_t angle_weight[POLARITY_SEGMENTS] = {-1, 0, 0, 2, 0, 0, -1};
 
+// Accelerated for n periods and braked for n more the shaft turns by accel n^2.
+static int16_t length_for(int32_t accel_q8) {
+  if (accel_q8 > ACCEL_MOST_Q8) return POLARITY_SEGMENT / 2;
+  if (accel_q8 > ACCEL_LEAST_Q8) return POLARITY_SEGMENT;
+  return (accel_q8 > ACCEL_LEAST_Q8 / 4) ? 2 * POLARITY_SEGMENT : 4 * POLARITY_SEGMENT;
+}
+
 void polarity_begin(polarity_t* s, uint32_t angle_bam, int32_t current_q20, int32_t accel_q8) {
+  if (s->current_q20 == 0) s->length = length_for(accel_q8);
   s->passes = 0;
   s->current_q20 = current_q20;
-  // Two patterns, each with an excursion of accel * n^2.
-  s->expected_bam = qc_mul_sat(accel_q8, (int32_t)POLARITY_SEGMENT * POLARITY_SEGMENT * 2, 8);
+  s->expected_bam = qc_mul_sat(accel_q8, (int32_t)s->length * s->length * 2, 8);  // two patterns
   s->response_bam = 0;
   s->rough_bam = 0;
   s->sigma_q8 = 0;
@@ -26,6 +35,7 @@ void polarity_begin(polarity_t* s, uint32_t angle_bam, int32_t current_q20, int3
 
 void polarity_again(polarity_t* s, uint32_t angle_bam) {
   s->tick = 0;
+  s->segment = 0;
   s->passes = q_min16((int16_t)(s->passes + 1), PASSES_MAX);
   s->last_bam = angle_bam;
   s->origin_bam = angle_bam;
@@ -33,12 +43,14 @@ void polarity_again(polarity_t* s, uint32_t angle_bam) {
 }
 
 // Standard error of the response, the mean of all passes. Neighbouring angles differ by 1.13 sigma in the mean; the
-// weights 1, 2, 1 of two patterns over means of HALF angles, halved, leave 0.39 sigma of it: 0.34 times the mean
-// difference.
+// weights 1, 2, 1 of two patterns over means of 20 angles, halved, leave 0.39 sigma of it: 0.34 times the mean
+// difference. It falls with the root of the number of angles, by tens; beyond 120 it is taken for larger than it is.
 static int32_t error_bam(const polarity_t* s) {
-  static const int16_t per_root_q14[PASSES_MAX] = {16384, 11585, 9459, 8192, 7327, 6689};
-  const int32_t rough = s->rough_bam / (PAUSES * (HALF - 1) * s->passes);
-  return qc_mul_sat(qc_mul_sat(rough, 89129L, 10), per_root_q14[s->passes - 1], 14);  // 2^-8 back to one, times 0.34
+  static const int16_t per_root_q14[TENS_MAX] = {23170, 16384, 13377, 11585, 10362, 9459,
+                                                 8757,  8192,  7723,  7327,  6986,  6689};
+  const int32_t rough = s->rough_bam / (PAUSES * (s->length / 2 - 1) * s->passes);
+  const int16_t tens = q_min16((int16_t)(s->passes * s->length / 20), TENS_MAX);
+  return qc_mul_sat(qc_mul_sat(rough, 89129L, 10), per_root_q14[tens - 1], 14);  // 2^-8 back to one, times 0.34
 }
 
 static polarity_result_t judge(polarity_t* s) {
@@ -51,24 +63,31 @@ static polarity_result_t judge(polarity_t* s) {
   return (response <= -threshold) ? POLARITY_WRONG : POLARITY_AMBIGUOUS;
 }
 
-static void look_at_scatter(polarity_t* s, uint32_t angle_bam) {
-  if (s->tick % POLARITY_SEGMENT == HALF) return;  // no neighbour inside this pause
-  s->rough_bam = qc_add_sat(s->rough_bam, q_shr(qc_abs_sat(angle_diff_bam(angle_bam, s->last_bam)), 8));
+// The second pattern is the first one with the opposite sign.
+static void begin_segment(polarity_t* s) {
+  s->tick = 0;
+  s->segment++;
+  if (s->segment < POLARITY_SEGMENTS) return;
+  s->segment = 0;
+  if (s->current_q20 < 0) s->result = judge(s);
+  s->current_q20 = -s->current_q20;
 }
 
 int32_t polarity_step(polarity_t* s, uint32_t angle_bam) {
-  if (s->tick >= POLARITY_LENGTH) return 0;
-  const int16_t segment = (int16_t)((s->tick / POLARITY_SEGMENT) % POLARITY_SEGMENTS);
-  const int16_t sign = (s->tick < POLARITY_LENGTH / 2) ? 1 : -1;
+  if (s->result != POLARITY_PENDING) return 0;
+  const int16_t weight = angle_weight[s->segment];
   // Only the second half of a pause counts: the current has died away.
-  if (s->tick % POLARITY_SEGMENT >= HALF) {
-    const int32_t moved = angle_diff_bam(angle_bam, s->origin_bam) / (2 * HALF);
-    s->response_bam = qc_add_sat(s->response_bam, sign * angle_weight[segment] * moved);
-    if (angle_weight[segment] != 0) look_at_scatter(s, angle_bam);
+  const int16_t inside = (int16_t)(s->tick - s->length / 2);
+  if (weight != 0 && inside >= 0) {
+    const int32_t share = weight * (angle_diff_bam(angle_bam, s->origin_bam) / s->length);
+    const int32_t moved = (s->current_q20 < 0) ? -share : share;
+    s->response_bam = qc_add_sat(s->response_bam, moved);
+    const int32_t step = (inside > 0) ? qc_abs_sat(angle_diff_bam(angle_bam, s->last_bam)) : 0;
+    s->rough_bam = qc_add_sat(s->rough_bam, q_shr(step, 8));
   }
   s->last_bam = angle_bam;
-  const int32_t current = sign * drive_sign[segment] * s->current_q20;
+  const int32_t current_q20 = drive_sign[s->segment] * s->current_q20;
   s->tick++;
-  if (s->tick == POLARITY_LENGTH) s->result = judge(s);
-  return current;
+  if (s->tick == s->length) begin_segment(s);
+  return current_q20;
 }

@@ -102,16 +102,15 @@ static int32_t motion_current(const drive_start_t* s) {
 static void begin_motion(drive_t* d) {
   drive_start_t* const s = &starting;
   if (d->found.phase != START_MOTION) s->tries = 0;
+  const uint32_t angle_bam = d->position.avv.observer.angle_bam;
   if (s->starved && s->tries > 0u) {
-    polarity_again(&s->motion, d->position.avv.observer.angle_bam);
-    begin_test(d, START_MOTION);
-    return;
+    polarity_again(&s->motion, angle_bam);
+  } else {
+    const int32_t current = motion_current(s);
+    const int32_t torque_q16 = qc_mul(machine_torque_constant_q24(&d->model, 0), current, 28);
+    polarity_begin(&s->motion, angle_bam, current, qc_mul_sat(torque_q16, d->model.accel_q12, 20));
+    s->motion.bounded = s->starved;
   }
-  const int32_t current = motion_current(s);
-  const int32_t torque_q16 = qc_mul(machine_torque_constant_q24(&d->model, 0), current, 28);
-  polarity_begin(&s->motion, d->position.avv.observer.angle_bam, current,
-                 qc_mul_sat(torque_q16, d->model.accel_q12, 20));
-  s->motion.bounded = s->starved;
   begin_test(d, START_MOTION);
 }
 
@@ -174,11 +173,11 @@ static start_phase_t step_saturation(drive_t* d) {
 static start_phase_t step_motion(drive_t* d) {
   drive_start_t* const s = &starting;
   const uint32_t raw = d->position.avv.observer.angle_bam + (uint32_t)d->position.avv.error_bam;
+  const bool pending = s->motion.result == POLARITY_PENDING;
+  const int16_t tick = s->motion.tick;
   const int32_t reference_q20 = polarity_step(&s->motion, raw);
   d->control.reference_q20.q = reference_q20;
-  const int16_t tick = (int16_t)((s->motion.tick - 1) % POLARITY_SEGMENT);
-  if (s->tick <= POLARITY_LENGTH)
-    followed_step(&s->followed, tick, POLARITY_SEGMENT, reference_q20, d->control.measured_q20.q);
+  if (pending) followed_step(&s->followed, tick, s->motion.length, reference_q20, d->control.measured_q20.q);
   if (s->motion.result == POLARITY_PENDING || !start_has_exclusive_slot(d)) return START_GOES_ON;
   s->tries++;
   if (!followed_well(&s->followed, s->motion.current_q20)) return starve(d);

@@ -14,6 +14,7 @@ using namespace stillspin::test;
 using namespace stillspin::test::seen;
 
 constexpr double kAmps = 3.0;
+constexpr int kTest = 2 * POLARITY_SEGMENTS * POLARITY_SEGMENT;  // periods
 
 // Electrical acceleration of motor A, rad per period^2, per ampere of i_q.
 double accel_per_amp() {
@@ -28,7 +29,16 @@ struct Conditions {
   double load_amps = 0.0;  // constant load, as the current that would balance it
   double noise = 0.0;      // rad, of every angle measured
   bool bounded = false;
+  double expected_inertia = 1.0;  // times motor A's: the test is as long as this wants it
 };
+
+// A test of a machine with so many times motor A's inertia.
+polarity_t begun(double angle = 0.0, double inertia = 1.0) {
+  polarity_t s = {};
+  const std::int32_t accel = accel_q8(accel_per_amp() * kAmps / inertia);
+  polarity_begin(&s, bam(angle), raw(kAmps, 20), accel);
+  return s;
+}
 
 struct Outcome {
   polarity_t state;
@@ -42,9 +52,10 @@ Outcome run(const Conditions& c, std::uint64_t seed = 1) {
   double angle = 2.9, speed = 0.0;  // near half a turn, so that the wrap is part of the test
   const double start = angle;
   const double turned = c.wrong_way_round ? kPi : 0.0;  // what the saliency took for the d-axis
-  polarity_begin(&o.state, bam(angle + turned), raw(kAmps, 20), accel_q8(accel_per_amp() * kAmps));
+  o.state = begun(angle + turned, c.expected_inertia);
   o.state.bounded = c.bounded;
-  for (int n = 0; n < POLARITY_LENGTH; ++n) {
+  const int periods = 2 * POLARITY_SEGMENTS * o.state.length;
+  for (int n = 0; n < periods; ++n) {
     EXPECT_EQ(o.state.result, POLARITY_PENDING) << n;
     const double measured = angle + turned + c.noise * random.normal();
     const double iq = real(polarity_step(&o.state, bam(measured)), 20);
@@ -91,14 +102,13 @@ TEST(Polarity, ALightShaftIsBelievedUnlessSomethingElseMayMoveIt) {
 
 // Passes are counted together: their mean response, and a standard error that falls with the root of their number.
 TEST(Polarity, PassesAddUp) {
-  polarity_t s;
-  polarity_begin(&s, 0, raw(kAmps, 20), accel_q8(accel_per_amp() * kAmps));
+  polarity_t s = begun();
   std::int32_t first = 0;
   for (int pass = 1; pass <= 4; ++pass) {
     // Every response is the same, and so is the scatter.
-    for (int n = 0; n < POLARITY_LENGTH; ++n) {
+    for (int n = 0; n < kTest; ++n) {
       const int segment = n / POLARITY_SEGMENT % POLARITY_SEGMENTS;
-      const double sign = (n < POLARITY_LENGTH / 2) ? 1.0 : -1.0;
+      const double sign = (n < kTest / 2) ? 1.0 : -1.0;
       const double moved = (segment == 3) ? sign * 0.02 : 0.0;
       (void)polarity_step(&s, bam(moved + (n % 2 == 0 ? 0.01 : -0.01)));
     }
@@ -175,7 +185,57 @@ TEST(Polarity, NothingIsCommandedAfterTheEnd) {
   Outcome o = run({});
   EXPECT_EQ(polarity_step(&o.state, 0), 0);
   EXPECT_EQ(o.state.result, POLARITY_RIGHT);
-  EXPECT_EQ(o.state.tick, POLARITY_LENGTH);
+}
+
+// 2.3 degrees in the usual segment. A lighter shaft has the half, a heavier one twice and four times as much,
+// within 1.5 to 10 degrees as far as there are segments for it.
+TEST(Polarity, ASegmentIsAsLongAsTheShaftNeeds) {
+  struct Of {
+    double inertia;
+    int length;
+    double degrees;
+  };
+  for (const Of& of : {Of{1.0 / 16, 20, 9.28},
+                       {0.23, 20, 2.52},
+                       {0.24, 40, 9.67},
+                       {1.0, 40, 2.32},
+                       {1.5, 40, 1.55},
+                       {1.6, 80, 5.80},
+                       {6.1, 80, 1.52},
+                       {6.3, 160, 5.89},
+                       {15.0, 160, 2.48},
+                       {60.0, 160, 0.62}}) {
+    for (const bool wrong : {false, true}) {
+      Conditions c;
+      c.inertia = of.inertia;
+      c.expected_inertia = of.inertia;
+      c.wrong_way_round = wrong;
+      const Outcome o = run(c);
+      EXPECT_EQ(o.state.length, of.length) << of.inertia;
+      EXPECT_NEAR(o.travel / kDegree, of.degrees, 0.01) << of.inertia;
+      EXPECT_EQ(o.state.result, wrong ? POLARITY_WRONG : POLARITY_RIGHT) << of.inertia;
+      EXPECT_NEAR(o.rest_speed, 0.0, 1e-12);
+    }
+  }
+}
+
+// The standard error is that of as many angles as there were: with one degree of noise it is the scatter of the
+// response over many tests, whatever the segment's length.
+TEST(Polarity, TheErrorFallsWithTheRootOfTheLength) {
+  for (const double inertia : {1.0 / 16, 1.0, 4.0, 16.0}) {
+    double squares = 0.0, told = 0.0;
+    constexpr int kTests = 200;
+    for (std::uint64_t seed = 1; seed <= kTests; ++seed) {
+      Conditions c;
+      c.inertia = inertia;
+      c.expected_inertia = inertia;
+      c.noise = 1.0 * kDegree;
+      const Outcome o = run(c, seed);
+      squares += std::pow(response(o) - 1.0, 2);
+      told += std::fabs(response(o)) / real(o.state.sigma_q8, 8);
+    }
+    EXPECT_NEAR(told / kTests / std::sqrt(squares / kTests), 1.0, 0.15) << inertia;
+  }
 }
 
 // A response of a quarter of what is expected is enough, either way, and the least that is.
@@ -195,14 +255,13 @@ TEST(Polarity, AQuarterOfTheResponseIsEnough) {
 TEST(Polarity, ItsErrorIsTheScatterInThePauses) {
   constexpr int kHalf = POLARITY_SEGMENT / 2;
   const auto sigma = [](double pauses, double between) {
-    polarity_t s;
-    polarity_begin(&s, 0, raw(kAmps, 20), accel_q8(accel_per_amp() * kAmps));
+    polarity_t s = begun();
     double way = 0.0;
-    for (int n = 0; n < POLARITY_LENGTH; ++n) {
+    for (int n = 0; n < kTest; ++n) {
       const int segment = n / POLARITY_SEGMENT % POLARITY_SEGMENTS;
       const bool pause = (segment == 0 || segment == 3 || segment == 6) && n % POLARITY_SEGMENT >= kHalf;
       // the middle pause is off by a degree, in the first pattern one way and in the second the other
-      way = segment == 3 ? (n < POLARITY_LENGTH / 2 ? 1.0 : -1.0) * kDegree : 0.0;
+      way = segment == 3 ? (n < kTest / 2 ? 1.0 : -1.0) * kDegree : 0.0;
       (void)polarity_step(&s, bam(way + (n % 2 == 0 ? 0.5 : -0.5) * (pause ? pauses : between)));
     }
     return real(s.sigma_q8, 8);

@@ -122,7 +122,7 @@ TEST_F(StartStanding, TheTestsCommandTheirCurrents) {
   at(START_SETTLE, 100);
   step();
   std::int32_t most = 0;
-  for (int n = 0; n < POLARITY_LENGTH / 2; ++n) {
+  for (int n = 0; n < POLARITY_SEGMENTS * POLARITY_SEGMENT; ++n) {
     step();
     most = std::max(most, inside::reference_dq_q20().q);
   }
@@ -133,6 +133,24 @@ TEST_F(StartStanding, TheTestsCommandTheirCurrents) {
       real(machine_torque_constant_q24(&inside::model(), 0), 24) * real(parameters.polarity_current, 20);
   const double accel = torque * real(inside::model().accel_q12, 12);
   EXPECT_NEAR(start().motion.expected_bam, accel * POLARITY_SEGMENT * POLARITY_SEGMENT * 2.0, 1e-3 * accel * 1e3);
+}
+
+// Twice the inertia, twice the segment; a second try has more current and the same segment.
+TEST_F(StartStanding, MotionTakesTheTimeThatTheInertiaWants) {
+  for (const auto& [inertia, length] : {std::pair{0.00455, 40}, {0.0091, 80}, {0.05, 160}, {0.0002, 20}}) {
+    SetUp();
+    parameters.inertia = raw(inertia, 24);
+    ASSERT_TRUE(drive_config_load(&inside::config()));
+    inside::model() = inside::config().nameplate;
+    inside::config().saturation = {0, 0};
+    at(START_SETTLE, 100);
+    step();
+    EXPECT_EQ(start().motion.length, length) << inertia;
+    const std::int32_t expected = start().motion.expected_bam;
+    motion_says(0.1);
+    EXPECT_EQ(start().motion.length, length) << inertia;
+    EXPECT_NEAR(start().motion.expected_bam, 2.0 * expected, 0.01 * expected);
+  }
 }
 
 // A hundred periods after the test the current is gone; then the half turn is known.

@@ -59,7 +59,9 @@ class StartStanding : public Drive {
   static void motion_says(double response) {
     at(START_MOTION, 2);
     polarity_t& m = start().motion;
-    m.tick = POLARITY_LENGTH - 1;
+    m.segment = POLARITY_SEGMENTS - 1;
+    m.current_q20 = -m.current_q20;  // of the second pattern
+    m.tick = static_cast<std::int16_t>(m.length - 1);
     m.response_bam = static_cast<std::int32_t>(response * m.expected_bam);
     m.rough_bam = 0;
     step();

@@ -19,6 +19,7 @@ static int32_t any_current(void) { return any_from(AMPERES_Q20 / 8, CURRENT_MAX_
 
 static void move(void) {
   polarity_t s;
+  s.current_q20 = 0;
   polarity_begin(&s, any_u32, any_current(), any_i32);
   //@ loop widen_hints s.passes, 6;
   while (any_bool()) {

@@ -2,6 +2,7 @@
 
 import dataclasses
 import importlib
+import math
 import re
 from pathlib import Path
 
@@ -56,10 +57,15 @@ def test_the_motors_that_ship_are_of_the_size_of_the_defaults(native, name):
 
 
 def test_a_segment_of_the_polarity_test_is_as_long_as_the_drives():
-    (periods,) = re.findall(
-        r"#define POLARITY_SEGMENT (\d+)", (ROOT / "estimators/polarity.h").read_text(encoding="utf-8")
-    )
-    assert pytest.approx(int(periods) * similarity.PERIOD) == similarity.POLARITY_SEGMENT
+    source = "".join((ROOT / f"estimators/polarity.{ending}").read_text(encoding="utf-8") for ending in "ch")
+    said = {name: int(number) for name, number in re.findall(r"#define (\w+) (\d+)", source)}
+    assert said["POLARITY_SEGMENT"] == similarity.SEGMENT
+    for name, degrees in (("ACCEL_LEAST_Q8", 1.5), ("ACCEL_MOST_Q8", 10.0)):
+        assert said[name] / 256 * similarity.SEGMENT**2 == pytest.approx(degrees / 360 * 2**32)
+    size = similarity.REFERENCE
+    usual = size.turn(1.0, similarity.SEGMENT)
+    for degrees, periods in ((10.1, 20), (9.9, 40), (1.51, 40), (1.49, 80), (0.38, 80), (0.37, 160), (0.01, 160)):
+        assert size.segment(math.radians(degrees) / usual) == periods, degrees
 
 
 def test_the_reference_is_motor_a(native):
@@ -98,19 +104,30 @@ def test_a_nameplate_that_is_not_complete_has_no_size(native):
 
 
 def test_speeds_go_by_the_base_speed(native):
-    for name in ("blend_low", "blend_high", "flux_low", "flux_high", "if_speed", "spin_speed"):
+    for name in (
+        "blend_low",
+        "blend_high",
+        "flux_low",
+        "flux_high",
+        "if_speed",
+        "spin_speed",
+    ):
         assert times(native, name, volts=1200.0) == 4.0
         assert times(native, name, volts=600.0, current_range=40.0) == 2.0
     assert followed(native, {"speed_limit": 900.0}, volts=1200.0)["spin_speed"] == 900.0
 
 
-def test_a_ramp_is_a_share_of_what_the_machine_accelerates_with_but_not_faster_to_its_base_speed(native):
+def test_a_ramp_is_a_share_of_what_the_machine_accelerates_with_but_not_faster_to_its_base_speed(
+    native,
+):
     assert times(native, "speed_ramp", inertia=4 * 0.00455) == 0.25
     assert times(native, "speed_ramp", inertia=0.00455 / 8) == 1.0
     assert times(native, "if_acceleration", inertia=0.00455 / 8) == 8.0
 
 
-def test_a_speed_error_asks_for_no_larger_share_of_the_rated_current_than_with_the_reference(native):
+def test_a_speed_error_asks_for_no_larger_share_of_the_rated_current_than_with_the_reference(
+    native,
+):
     """Predictive law: of the error so much is closed in a step, by so many amperes for a rad/s."""
 
     def amperes(inertia):
@@ -132,20 +149,60 @@ def test_a_load_is_followed_the_slower_the_sharper_the_angle_is_seen(native):
     """What turns with the current would be taken for a load, and fed back as a current."""
     assert times(native, "observer_load_rate", inductance_d=4.9e-4, inductance_q=7.8e-4) == 0.25
     for name in NAMES:
-        loaded = profile.load(name, core.plant_schema(native), core.parameters(native), name, checked=False)
+        loaded = profile.load(
+            name,
+            core.plant_schema(native),
+            core.parameters(native),
+            name,
+            checked=False,
+        )
         size = similarity.of(loaded.plant)
         rate = loaded.parameters.get("observer_load_rate")
         if rate and "observer_load_rate" in loaded.by_rule:
             assert size.loop_of_load(rate) <= 2.05 * similarity.REFERENCE.loop_of_load(1.0), name
 
 
-def test_the_polarity_test_turns_a_heavy_shaft_by_more_current_and_a_light_one_by_less(native):
-    assert times(native, "polarity_current", inertia=2 * 0.00455) == 2.0
-    heavy = followed(native, inertia=20 * 0.00455)["polarity_current"]
-    assert heavy == pytest.approx(min(10.8894, similarity.REFERENCE.current_that_follows()), rel=1e-3)
-    light = dataclasses.replace(similarity.REFERENCE, inertia=0.00455 / 50.0)
-    assert times(native, "polarity_current", inertia=light.inertia) < 1.0
-    assert light.turn(followed(native, inertia=light.inertia)["polarity_current"]) < 0.175
+def told_of(native, **changes):
+    """A machine and the current of its polarity test."""
+    size = dataclasses.replace(similarity.REFERENCE, **changes)
+    return size, followed(native, **changes).get("polarity_current", 3.0)
+
+
+@pytest.mark.parametrize(
+    ("inertia", "periods", "current"),
+    [
+        (1 / 50, 20, 0.75),
+        (0.1, 20, 3.0),
+        (1.0, 40, 3.0),
+        (1.4, 40, 3.0),
+        (2.0, 80, 3.0),
+        (5.0, 80, 3.0),
+        (20.0, 160, 3.0),
+    ],
+)
+def test_the_polarity_test_of_a_heavy_shaft_lasts_longer_and_a_light_one_has_less_current(
+    native, inertia, periods, current
+):
+    size, told = told_of(native, inertia=inertia * 0.00455)
+    assert (size.segment(told), told) == (periods, current)
+    assert size.turn(told, periods) < similarity.TURN_MOST
+
+
+def test_the_polarity_test_has_more_current_where_the_angle_is_seen_less_sharply(
+    native,
+):
+    usual = similarity.REFERENCE.clearness(3.0)
+    for share, current in ((0.8, 3.0), (0.5, 6.0), (0.3, 10.89)):
+        step = share * similarity.REFERENCE.saliency
+        size, told = told_of(native, inductance_q=1.0 / (1.0 / 4.9e-3 - step))
+        assert told == pytest.approx(current, rel=1e-3)
+        assert size.clearness(told) >= usual / 2.0
+
+
+def test_the_current_of_the_polarity_test_is_one_that_the_link_reverses(native):
+    size, told = told_of(native, inertia=100 * 0.00455, volts=30.0)
+    assert told == 6.0 <= size.current_that_follows(told)
+    assert size.current_that_follows(size.current) < size.current
 
 
 def test_the_estimator_of_a_start_is_faster_where_the_shaft_is(native):

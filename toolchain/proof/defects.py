@@ -141,7 +141,7 @@ DEFECTS = (
         "q_sub_sat(length_q24, along_q24)",
         "length_q24 - along_q24",
     ),
-    Defect("start", "polarity_step", "estimators/polarity.c", "qc_add_sat(s->response_bam, s", "(s->response_bam + s"),
+    Defect("start", "polarity_step", "estimators/polarity.c", "qc_add_sat(s->response_bam, m", "(s->response_bam + m"),
     Defect(
         "start", "saturation_resistance_q24", "estimators/saturation.c", "return q_neg_sat(q_div(", "return -(q_div("
     ),

@@ -18,9 +18,10 @@ from stillspin.cases import open_loop
 from stillspin.entry import Entry
 
 PERIOD = 1e-4  # s, of the control interrupt
-POLARITY_SEGMENT = 4e-3  # s, of the polarity test by motion (estimators/polarity.h)
+# The polarity test by motion (estimators/polarity.c): periods of a segment, and the turn in it, electrical.
+SEGMENT, SEGMENT_LONGEST = 40, 160
+TURN_LEAST, TURN_MOST = math.radians(1.5), math.radians(10.0)
 _SPEED_PERIOD = 1e-3  # s
-_TURN_MOST = math.radians(10.0)  # electrical, in a segment of the polarity test: its current stays along the q-axis
 _FOLLOW_MOST = 2.0  # times as much as the reference
 _SWING = 2.1  # the current loop over the frequency at which EMF, inductance and inertia swing
 _LOOP_END = 10400.0  # rad/s times three half periods and the divider's (firmware/config/rules.c)
@@ -87,13 +88,27 @@ class Size:
         """What the noise of the sensors looks like as an EMF, of 1/s."""
         return self.current_range * self.inductance_q
 
-    def turn(self, current: float) -> float:
-        """Angle of a segment of the polarity test, rad electrical."""
-        return self.pole_pairs * self.torque_per_ampere * current / self.inertia * POLARITY_SEGMENT**2
+    def turn(self, current: float, periods: float) -> float:
+        """Angle of such a segment of the polarity test, rad electrical."""
+        return self.pole_pairs * self.torque_per_ampere * current / self.inertia * (periods * PERIOD) ** 2
 
-    def current_that_follows(self) -> float:
-        """A that the link reverses in half a segment of the polarity test."""
-        return self.volts / math.sqrt(3.0) * POLARITY_SEGMENT / 2.0 / (2.0 * self.inductance_q)
+    def segment(self, current: float) -> int:
+        """Periods that the drive takes for one."""
+        if self.turn(current, SEGMENT) > TURN_MOST:
+            return SEGMENT // 2
+        periods = SEGMENT
+        while periods < SEGMENT_LONGEST and self.turn(current, periods) < TURN_LEAST:
+            periods *= 2
+        return periods
+
+    def clearness(self, current: float) -> float:
+        """The turn over its error, which is less the more angles there are, of an arbitrary scale."""
+        periods = self.segment(current)
+        return self.turn(current, periods) * self.sharpness * math.sqrt(periods)
+
+    def current_that_follows(self, current: float) -> float:
+        """A that the link reverses in half a segment of the polarity test with this current."""
+        return self.volts / math.sqrt(3.0) * self.segment(current) * PERIOD / 2.0 / (2.0 * self.inductance_q)
 
     def loop_of_load(self, rate: float) -> float:
         """How fast a load of so many N m in 10 ms is followed, squared, over the acceleration at rated current.
@@ -151,13 +166,16 @@ def _by_current(asked: _Asked, name: str) -> float:
 
 def _polarity_current(asked: _Asked, name: str) -> float:
     """Enough that the turn of a light shaft shows, as little as a heavy one bears; and the link has to reverse it."""
-    size, least = asked.size, _by_current(asked, name)
+    size, current = asked.size, _by_current(asked, name)
     if size.saliency == 0.0:
-        return least
-    seen = size.turn(least) * size.sharpness / (REFERENCE.turn(asked.default(name)) * REFERENCE.sharpness)
-    wanted = least * max(_power(1.0 / seen), 1.0)
-    most = min(size.current, size.current_that_follows())
-    return _halved(min(wanted, max(most, least)), lambda current: size.turn(current) <= _TURN_MOST)
+        return current
+    enough = REFERENCE.clearness(asked.default(name)) / math.sqrt(2.0)
+    tried = [current]
+    while size.clearness(tried[-1]) < enough and tried[-1] < size.current:
+        tried.append(min(2.0 * tried[-1], size.current))
+    followed = [current for current in tried if current <= size.current_that_follows(current)]
+    best = max(followed or tried[:1], key=size.clearness)
+    return _halved(best, lambda current: size.turn(current, SEGMENT / 2) <= TURN_MOST)
 
 
 def _load(asked: _Asked, name: str) -> float:
