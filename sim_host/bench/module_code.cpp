@@ -1,6 +1,7 @@
 // What Python has of a board that executes an image; core_board.py has the contract.
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -115,11 +117,17 @@ void set_register(Self self, const std::string& name, std::uint32_t value) {
   }
 }
 
-void stop_at(Self self, const std::vector<std::uint32_t>& addresses, bool traps) {
+void stop_at(Self self, const std::vector<std::uint32_t>& addresses, bool traps,
+             const std::vector<std::uint32_t>& words) {
   c28x::Core& core = self.board().code();
+  for (const std::uint32_t address : words) {
+    if (core.writable_word(address) == nullptr) throw std::invalid_argument("a word is in no RAM");
+  }
   core.watch().stop_nowhere();
   core.set_stop_at_breakpoint(traps);
+  core.set_stop_at_illegal(traps);
   for (const std::uint32_t address : addresses) core.watch().stop_at(address, true);
+  for (const std::uint32_t address : words) core.watch().stop_on_change(address, core.writable_word(address));
 }
 
 nb::list traced(Self self) {
@@ -190,11 +198,18 @@ void bind_code(nb::class_<PythonBoard>& board) {
       .def("within", &within)
       .def("registers", [](Self self) { return dict_of(self.board().code().r); })
       .def("set_register", &set_register, nb::arg("name"), nb::arg("value"))
-      .def("stop_at", &stop_at, nb::arg("addresses"), nb::arg("traps") = false)
+      .def("stop_at", &stop_at, nb::arg("addresses"), nb::arg("traps") = false,
+           nb::arg("words") = std::vector<std::uint32_t>{})
       .def(
           "stop_after",
           [](Self self, std::uint64_t instructions) { self.board().code().watch().stop_after(instructions); },
           nb::arg("instructions"))
+      .def_prop_ro("changed",
+                   [](Self self) -> std::optional<std::uint32_t> {
+                     const std::uint32_t address = self.board().code().watch().changed();
+                     if (address == c28x::Watch::kNowhere) return std::nullopt;
+                     return address;
+                   })
       .def_prop_ro("halted", [](Self self) { return self.board().code().watch().halted; })
       .def(
           "trace", [](Self self, std::size_t depth) { self.board().code().watch().trace(depth); }, nb::arg("depth"))

@@ -1,5 +1,6 @@
 """GDB's remote protocol, spoken by a small client: framing, registers, memory, breakpoints, steps, Ctrl-C."""
 
+import contextlib
 import itertools
 import re
 import socket
@@ -141,6 +142,24 @@ def test_a_breakpoint_stops_before_its_instruction_each_time(client, at):
     assert client.ask(f"z1,{at['sample']:x},2") == "OK"
 
 
+def test_a_word_that_is_written_stops_behind_its_instruction(client, at):
+    assert client.ask(f"Z2,{at['COUNT']:x},1") == "OK"
+    counted = []
+    for _ in range(3):
+        assert client.ask("c") == f"T05watch:{at['COUNT']:x};"
+        counted.append((client.register("PC"), client.word(at["COUNT"])))
+    assert client.ask("?") == f"T05watch:{at['COUNT']:x};"
+    (place, first), *rest = counted
+    assert at["sample"] < place < at["sample"] + 40
+    assert rest == [(place, first + 1), (place, first + 2)], "once in each interrupt"
+    assert client.ask(f"z2,{at['COUNT']:x},1") == "OK"
+    assert client.ask("Z2,6f8a,1") == "E01", "a register is no word of RAM"
+    assert client.ask("Z3,8000,1") == "", "reads are not watched"
+    client.ask(f"Z0,{at['beside']:x},2")
+    assert client.ask("c") == "S05"
+    client.ask(f"z0,{at['beside']:x},2")
+
+
 def test_steps_go_through_the_code(client, at):
     client.ask(f"Z0,{at['sample']:x},2")
     client.ask("c")
@@ -222,23 +241,54 @@ def test_packets_come_in_pieces_and_broken():
     assert Line().take(b"+$g#67") == (["g"], b"+")
 
 
-def test_a_trap_instruction_stops_and_goes_on(tmp_path):
+@contextlib.contextmanager
+def served(tmp_path, text):
+    """A client of a program's board, in a process of its own."""
     source = tmp_path / "trap.asm"
-    source.write_text(" .org 0x3F7FF6\n LB start\n .org 0x3F4000\nstart: NOP\nhere: ESTOP0\n NOP\nstay: B stay,UNC\n")
+    source.write_text(text)
     image = linked_file(tmp_path, "trap", [source])
     command = [sys.executable, "-m", "stillspin", "board", "--image", image, "--gdb", "0", "--speed", "0", "--for", "1"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
         try:
-            port = int(re.search(r"localhost:(\d+)", process.stdout.readline())[1])
-            client = Client(port)
-            assert client.ask("c") == "S05"
-            assert client.register("PC") == 0x3F4001
-            assert client.ask("s") == "S05"
-            assert client.register("PC") == 0x3F4003, "behind it, and one instruction on"
+            client = Client(int(re.search(r"localhost:(\d+)", process.stdout.readline())[1]))
+            yield client
             client.line.close()
         finally:
             process.terminate()
             process.wait(timeout=20)
+
+
+def test_a_trap_instruction_stops_and_goes_on(tmp_path):
+    text = " .org 0x3F7FF6\n LB start\n .org 0x3F4000\nstart: NOP\nhere: ESTOP0\n NOP\nstay: B stay,UNC\n"
+    with served(tmp_path, text) as client:
+        assert client.ask("c") == "S05"
+        assert client.register("PC") == 0x3F4001
+        assert client.ask("s") == "S05"
+        assert client.register("PC") == 0x3F4003, "behind it, and one instruction on"
+
+
+ILLEGAL = """
+        .org 0x3F7FF6
+        LB start
+        .org 0x3F4000
+start:  NOP
+lost:   .word 0x0000
+stay:   B stay,UNC
+        .org 0x66
+        NOP
+again:  B again,UNC
+"""
+
+
+@pytest.mark.parametrize(("go_on", "behind"), [("s", 0x66), ("c", 0x67)])
+def test_what_is_no_instruction_stops_before_it_traps(tmp_path, go_on, behind):
+    with served(tmp_path, ILLEGAL) as client:
+        assert client.ask("c") == "S04"
+        assert client.register("PC") == 0x3F4001
+        assert client.ask("?") == "S04"
+        client.ask("Z0,67,1")
+        assert client.ask(go_on) == "S05"
+        assert client.register("PC") == behind, "the routine of vector 19, which the boot ROM sends there"
 
 
 def test_gdb_goes_with_an_image_alone():

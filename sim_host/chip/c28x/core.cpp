@@ -170,10 +170,11 @@ std::uint32_t Core::pop32() {
   return read32(r.sp);
 }
 
-void Core::breakpoint(const Instruction& i) {
-  if (!stop_at_breakpoint_) return;
+bool Core::breakpoint(const Instruction& i) {
+  if (!stop_at_breakpoint_) return false;
   jump(i.address);
   stop_ = Stop::kBreakpoint;
+  return true;
 }
 
 // A test of V clears it, whatever it was.

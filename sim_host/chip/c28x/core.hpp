@@ -63,6 +63,9 @@ class Core : public MappedMemory, public Timing {
   /// context.
   void set_interrupt_cycles(std::uint32_t count) { interrupt_cycles_ = count; }
   void set_stop_at_breakpoint(bool stop) { stop_at_breakpoint_ = stop; }
+  /// With that also before what is no instruction traps.
+  void set_stop_at_illegal(bool stop) { stop_at_illegal_ = stop; }
+  bool stops_at_illegal() const { return stop_at_illegal_; }
 
   Registers r;
   std::uint64_t instructions = 0;
@@ -138,7 +141,8 @@ class Core : public MappedMemory, public Timing {
   void note_trap(const Instruction& i);
   void return_from_interrupt();
   void wait_for_interrupt() { idle_ = r.idlestat = true; }
-  void breakpoint(const Instruction& i);
+  /// Whether it stops here, where a debugger wants that.
+  bool breakpoint(const Instruction& i);
   void stop_unmodelled() { stop_ = Stop::kUnmodelled; }
 
  private:
@@ -165,6 +169,7 @@ class Core : public MappedMemory, public Timing {
   bool idle_ = false;
   bool nmi_ = false;
   bool stop_at_breakpoint_ = false;
+  bool stop_at_illegal_ = false;
   Stop stop_ = Stop::kNone;
   std::vector<Instruction>
       decoded_;  // by the lowest bits of the address, each checked against the words that are there

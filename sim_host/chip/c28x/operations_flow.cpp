@@ -136,6 +136,7 @@ void trap(Core& core, const Instruction& i) {
 void intr(Core& core, const Instruction& i) { core.take_interrupt(i.constant + 1); }
 void intr_fixed(Core& core, const Instruction& i) { core.take_interrupt(i.constant); }
 void illegal(Core& core, const Instruction& i) {
+  if (core.stops_at_illegal() && core.breakpoint(i)) return;
   core.note_trap(i);
   core.take_interrupt(kVectorIllegal);
 }

@@ -28,9 +28,17 @@ class Watch {
   /// The same for all of them.
   void stop_nowhere() {
     for (std::uint8_t& marked : marks_) marked = static_cast<std::uint8_t>(marked & ~kStop);
+    data_.clear();
+    changed_ = kNowhere;
   }
   /// Stops after so many instructions, repeats not counted; entries into interrupts are none.
   void stop_after(std::uint64_t instructions) { left_ = instructions; }
+  /// Stops behind the instruction that changes this word of memory, which is at the address.
+  void stop_on_change(std::uint32_t address, const std::uint16_t* word) { data_.push_back({address, word, *word}); }
+  /// The address of the word for which it last stopped so; kNowhere: another reason.
+  std::uint32_t changed() const { return changed_; }
+  static constexpr std::uint32_t kNowhere = ~0U;
+
   /// Other code than the memory's is at this address; whoever runs the core carries it out.
   void replace_code_at(std::uint32_t address) { mark(address, kReplaced, true); }
 
@@ -61,7 +69,7 @@ class Watch {
     const std::uint8_t marked = mark_at(r.pc);
     const bool passing = r.pc == passing_;
     passing_ = kNowhere;
-    if (!passing && (left_ == 0 || (marked & kStop) != 0)) {
+    if ((!passing && (left_ == 0 || (marked & kStop) != 0)) || (!data_.empty() && any_changed())) {
       passing_ = r.pc;
       left_ = kUnlimited;
       replaced_ = false;
@@ -82,7 +90,23 @@ class Watch {
  private:
   static constexpr std::uint8_t kStop = 1;
   static constexpr std::uint8_t kReplaced = 2;
-  static constexpr std::uint32_t kNowhere = ~0U;
+
+  struct Data {
+    std::uint32_t address;
+    const std::uint16_t* word;
+    std::uint16_t seen;
+  };
+
+  bool any_changed() {
+    for (Data& data : data_) {
+      if (*data.word == data.seen) continue;
+      changed_ = data.address;
+      data.seen = *data.word;
+      return true;
+    }
+    changed_ = kNowhere;
+    return false;
+  }
 
   // Where an F2808 has no memory nothing is marked: there is no instruction before which to stop.
   void mark(std::uint32_t address, std::uint8_t bit, bool on) {
@@ -97,6 +121,8 @@ class Watch {
   std::vector<std::uint8_t> marks_ = std::vector<std::uint8_t>(Profile::kIndices);
   std::uint64_t left_ = kUnlimited;
   std::uint32_t passing_ = kNowhere;
+  std::vector<Data> data_;
+  std::uint32_t changed_ = kNowhere;
   bool replaced_ = false;
   std::vector<Traced> trace_;
   std::uint64_t traced_ = 0;

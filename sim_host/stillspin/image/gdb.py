@@ -17,13 +17,17 @@ from stillspin.core_board import NativeBoard
 from stillspin.errors import InputError
 from stillspin.flash.names import Names
 from stillspin.image import gdb_target as target
-from stillspin.image import opened, trace
+from stillspin.image import opened, runaway, trace
 from stillspin.image.gdb_packets import INTERRUPT, LARGEST, Line, framed
 
 _HOST = "127.0.0.1"
 _TRAPPED = "S05"
 _ASKED = "S02"
+_ILLEGAL = "S04"
+"""The signals SIGTRAP, SIGINT, SIGILL: a breakpoint, a step or the beginning; Ctrl-C; what is no instruction."""
 _WRONG = "E01"
+_BREAKPOINTS, _WATCHPOINT = frozenset("01"), "2"
+"""Types of `Z`: in memory, in hardware; a write to data."""
 _TRAP_WORD = 0x7625
 """ESTOP0."""
 _SUPPORTED = f"PacketSize={LARGEST:x};qXfer:features:read+;QStartNoAckMode+;vContSupported+;swbreak-;hwbreak-"
@@ -60,6 +64,8 @@ class Remote:
         self._peer: socket.socket | None = None
         self._line = Line()
         self._places: set[int] = set()
+        self._words: set[int] = set()
+        self._stopped = _TRAPPED
         self._stepping = False
         self.runs = True
         self._requests = self._known()
@@ -79,7 +85,8 @@ class Remote:
         """Say that the program has stopped, take a debugger's requests, or wait for one for a while."""
         if self.runs and self._board.halted:
             self.runs = False
-            self._say(_TRAPPED)
+            self._stopped = self._reason()
+            self._say(self._stopped)
         wanted = self._peer or self._listening
         if not select.select([wanted], [], [], 0 if self.runs else seconds)[0]:
             return
@@ -120,6 +127,7 @@ class Remote:
         """The debugger has gone, and so have its breakpoints."""
         self._hang_up()
         self._places.clear()
+        self._words.clear()
         self._go_on()
 
     # ---- requests
@@ -136,7 +144,7 @@ class Remote:
             _Request("qRcmd,", self._monitor),
             _Request("vCont?", lambda _: "vCont;c;C;s;S"),
             _Request("vCont;", self._resume),
-            _Request("?", lambda _: _TRAPPED),
+            _Request("?", lambda _: self._stopped),
             _Request("g", lambda _: target.registers(self._board)),
             _Request("G", self._set_registers),
             _Request("p", self._register),
@@ -157,7 +165,8 @@ class Remote:
         if packet == INTERRUPT:
             if self.runs:
                 self._pause()
-                self._say(_ASKED)
+                self._stopped = _ASKED
+                self._say(self._stopped)
             return
         if self.runs:
             return  # while it runs nothing else is asked
@@ -214,11 +223,18 @@ class Remote:
         return "OK"
 
     def _place(self, rest: str, *, on: bool) -> str:
-        """A breakpoint; both kinds are the core's own, so that no code is changed for them."""
-        kind, address, *_ = rest.split(",")
-        if kind not in {"0", "1"}:
+        """A breakpoint, both kinds are the core's own, so that no code is changed; or words of RAM to watch."""
+        kind, address, *more = rest.split(",")
+        first = int(address, 16)
+        if kind in _BREAKPOINTS:
+            (self._places.add if on else self._places.discard)(first)
+            return "OK"
+        if kind != _WATCHPOINT:
             return ""
-        (self._places.add if on else self._places.discard)(int(address, 16))
+        words = set(range(first, first + int(more[0], 16)))
+        if on and not all(target.is_ram(word) for word in words):
+            return _WRONG
+        self._words = self._words | words if on else self._words - words
         return "OK"
 
     def _monitor(self, text: str) -> str:
@@ -238,6 +254,15 @@ class Remote:
 
     # ---- running and stopping
 
+    def _reason(self) -> str:
+        """Why it has stopped, as the protocol says it."""
+        if (changed := self._board.changed) is not None:
+            return f"T05watch:{changed:x};"
+        return _ILLEGAL if self._at_illegal() else _TRAPPED
+
+    def _at_illegal(self) -> bool:
+        return runaway.is_illegal(self._board.words(self._board.registers()["PC"], 2))
+
     def _resume(self, action: str, at: str = "") -> None:
         if at:
             self._board.set_register("PC", int(at, 16))
@@ -248,11 +273,23 @@ class Remote:
         there = self._board.registers()["PC"]
         if self._board.halted and self._board.inspect(there) == _TRAP_WORD and there not in self._places:
             self._board.set_register("PC", there + 1)  # ESTOP0 has stopped it and would again
-        self._board.stop_at(sorted(self._places), traps=self._peer is not None)
+        if self._board.halted and self._at_illegal():
+            self._trap()
+            if self._stepping:
+                self._stopped, self._stepping = self._reason(), False
+                self._say(self._stopped)
+                return
+        self._board.stop_at(sorted(self._places), traps=self._peer is not None, words=sorted(self._words))
         if self._stepping:
             self._board.stop_after(1)
         self._stepping = False
         self.runs = True
+
+    def _trap(self) -> None:
+        """Through what is no instruction, to the first one of the trap's routine."""
+        self._board.stop_at([])
+        self._board.stop_after(1)
+        opened.advance(self._board, _PAUSE)
 
     def _pause(self) -> None:
         """Before the next instruction; where the CPU sleeps, as it is."""

@@ -7,6 +7,7 @@ as registers are.
 from __future__ import annotations
 
 from stillspin.core_board import NativeBoard
+from stillspin.flash import memories
 
 REGISTERS = {
     **{"ACC": 32, "P": 32, "XT": 32},
@@ -75,6 +76,12 @@ def memory(board: NativeBoard, address: int, count: int) -> str:
     if not 0 <= address <= address + count <= _SPACE:
         raise ValueError("no such address")
     return "".join(digits(word, 16) for word in board.words(address, count))
+
+
+def is_ram(address: int) -> bool:
+    """Whether a word there can be watched."""
+    memory = memories.at(address)
+    return memory is not None and memory.group == "RAM"
 
 
 def set_memory(board: NativeBoard, address: int, text: str) -> None:
