@@ -1,5 +1,6 @@
 """What instructions cost beyond the cycles of their table: small programs, each counted by hand from docs/c28x.md."""
 
+import c28x_speed
 import pytest
 from c28x_desk import ask, put
 
@@ -203,3 +204,18 @@ def test_an_interrupt_begins_anew_as_a_branch_does():
     assert (idle, end) == ("idle", "breakpoint")
     taken = int(after.split()[0]) - int(before.split()[0])
     assert taken == 8 + 3 + 8 + 3 + 3, (before, after, waits)
+
+
+@pytest.mark.parametrize(("speed", "ends"), [(29.9, 1), (30.0, None)])
+def test_the_benchmark_fails_below_what_it_is_told(monkeypatch, capsys, tmp_path, speed, ends):
+    for name, figures in (("alone", 50.0), ("on_chip", (speed, 1.5)), ("whole_drive", (20.0, 1.0))):
+        monkeypatch.setattr(c28x_speed, name, lambda figures=figures: figures)
+    file = tmp_path / "some" / "speed.json"
+    try:
+        c28x_speed.main(["--least", "30", str(file)])
+        ended = None
+    except SystemExit as end:
+        ended = end.code
+    assert ended == ends
+    assert ("29.9 million instructions/s, the least wanted is 30" in capsys.readouterr().err) == bool(ends)
+    assert f'"instructions": {speed}' in file.read_text()

@@ -10,6 +10,7 @@ from elf_files import FUNCTION, OBJECT, SEGMENT_OCTETS, UNTYPED, altered, elf
 from stillspin.errors import InputError
 from stillspin.flash import elf as elf_files
 from stillspin.flash.files import drive_image, kernel_program, read_program
+from stillspin.flash.names import Names
 from stillspin.flash.program import Block
 
 BLOCKS = [Block(0x3F4000, (0x7700, 0x1234, 0x0006)), Block(0x9000, (1, 2))]
@@ -74,3 +75,14 @@ def test_an_image_is_timed_with_its_names(file):
     assert done.returncode == 0, done.stderr
     assert "INT1.1 sample " in done.stdout
     assert "\nbeside " in done.stdout
+
+
+def test_a_name_is_found_with_and_without_its_underscore():
+    """COFF has `_main` for C's main, the EABI `main`: a file of either answers to both."""
+    for there in ("main", "_main"):
+        names = Names(addresses={there: 7, "ain": 8})
+        assert [names.address(text, "--from") for text in ("main", "_main")] == [7, 7]
+        with pytest.raises(InputError, match="'mai' is neither"):
+            names.address("mai", "--from")
+    both = Names(addresses={"main": 1, "_main": 2})
+    assert [both.of_name(text) for text in ("main", "_main", "__main")] == [1, 2, 2]

@@ -43,15 +43,19 @@ class Names:
         source = self.lines.at(address)
         return f"0x{address:06X} {self.function(address)}" + (f" ({source})" if source else "")
 
+    def of_name(self, name: str) -> int | None:
+        """The address of a name as it is, or of C's: COFF puts a _ in front, the EABI does not."""
+        ways = (name, f"_{name}", *([name[1:]] if name.startswith("_") else []))
+        return next((self.addresses[way] for way in ways if way in self.addresses), None)
+
     def address(self, text: str, option: str) -> int:
         """What was typed: an address, a name with or without C's _, or FILE:LINE.
 
         Raises:
             InputError: there is nothing of it.
         """
-        for name in (text, f"_{text}"):
-            if name in self.addresses:
-                return self.addresses[name]
+        if (found := self.of_name(text)) is not None:
+            return found
         file, _, number = text.rpartition(":")
         if file and number.isdigit():
             places = self.lines.places(file, int(number))

@@ -105,10 +105,9 @@ def power_plant(native: NativeCore, image: Image, plant: Plant, seed: int) -> Na
 def _complete(board: NativeBoard, image: Image) -> None:
     """Give it the boot ROM's words, and carry out TI's flash library on the model's cells, where the image has it."""
     board.load_rom(image.rom)
-    known = image.names.addresses
 
     def place(name: str) -> int:
-        return known.get(name, known.get(f"_{name}", 0))
+        return image.names.of_name(name) or 0
 
     erase, program, verify = (place(f"Flash2808_{name}") for name in ("Erase", "Program", "Verify"))
     if erase or program or verify:
