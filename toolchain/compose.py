@@ -34,10 +34,7 @@ import word_code
 
 ROOT = pack_text.ROOT
 EDITIONS, FEATURE = "firmware/editions", "feature.toml"
-PARAMETERS, SIGNALS = (
-    "firmware/dictionary/parameter_list.h",
-    "firmware/dictionary/signal_list.h",
-)
+PARAMETERS, SIGNALS = "firmware/dictionary/parameter_list.h", "firmware/dictionary/signal_list.h"
 FAULTS = "firmware/dictionary/fault_list.h"
 KINDS, KIND = "firmware/text/catalogue.h", re.compile(r"CATALOGUE_([A-Z]+) = (\d+)")
 TEXTS, CMAKE = "packed_text_table.c", "composed.cmake"
@@ -73,13 +70,7 @@ class Table:
 SERVICE, STATUS = "firmware/interfaces/service.h", "firmware/api/status.h"
 COMMANDS = [row[0] for row in pack_text.rows((ROOT / "firmware/console/command_list.h").read_text("utf-8"), "COMMAND")]
 TABLES = {
-    "position_sources": Table(
-        "const position_source_t",
-        "firmware/interfaces/source.h",
-        "places",
-        9,
-        prefix="",
-    ),
+    "position_sources": Table("const position_source_t", "firmware/interfaces/source.h", "places", 9, prefix=""),
     "drive_states": Table("const state_t", "firmware/interfaces/state.h", "places", 8, prefix=""),
     "start_phases": Table("const phase_t", "firmware/start/phases.h", "places", 9, prefix=""),
     "phase_control": Table("const phase_control_t", "firmware/interfaces/phase_control.h", "one"),
@@ -88,19 +79,8 @@ TABLES = {
     "works": Table("work_t", SERVICE),
     "watch": Table("watch_t", SERVICE, "one"),
     "status_updates": Table("service_t", STATUS),
-    "requests": Table(
-        "const request_row_t",
-        "firmware/link/request_rows.h",
-        arrays=True,
-        asked_by="link",
-    ),
-    "commands": Table(
-        "command_function_t",
-        "firmware/console/commands.h",
-        "places",
-        len(COMMANDS),
-        asked_by="console",
-    ),
+    "requests": Table("const request_row_t", "firmware/link/request_rows.h", arrays=True, asked_by="link"),
+    "commands": Table("command_function_t", "firmware/console/commands.h", "places", len(COMMANDS), asked_by="console"),
     "status_lines": Table("const status_line_t", STATUS, asked_by="console"),
     "text_port": Table("const text_port_t", "firmware/interfaces/text_port.h", "one", asked_by="link"),
     "interlocks": Table("interlock_t", "firmware/mode/interlock.h"),
@@ -193,12 +173,7 @@ def read_edition(name: str, root: Path = ROOT) -> Edition:
         if said:
             inside = root / "firmware" / said
             outside = file.parent / said
-            features.append(
-                feature_of(
-                    said,
-                    outside if not inside.is_dir() and outside.is_dir() else inside,
-                )
-            )
+            features.append(feature_of(said, outside if not inside.is_dir() and outside.is_dir() else inside))
     here = {feature.name for feature in features}
     for feature in features:
         if missing := [need for need in feature.needs if need not in here]:
@@ -222,12 +197,7 @@ def table_text(name: str, edition: Edition, root: Path) -> str:
     for (place, row), (next_place, next_row) in pairwise(rows):
         if place == next_place or table.form == "one":
             raise ValueError(f"{edition.file}: {row} and {next_row} want the same place in {name}")
-    lines = [
-        f"// Made by toolchain/compose.py: {name} of the edition {edition.name}.",
-        "",
-        "#include <stddef.h>",
-        "",
-    ]
+    lines = [f"// Made by toolchain/compose.py: {name} of the edition {edition.name}.", "", "#include <stddef.h>", ""]
     lines += [f'#include "{header}"' for header in sorted(headers)]
     return "\n".join([*lines, "", table.text(name, rows)])
 
@@ -269,21 +239,9 @@ def left_out_text(edition: Edition, root: Path) -> str:
     try:
         mask = sum(1 << int(kinds[word]) for feature in gone for word in feature.words)
         tables = [
-            rows(
-                "parameters",
-                (number for feature in gone for number in feature.parameters),
-                parameters,
-            ),
-            rows(
-                "signals",
-                (name for feature in gone for name in feature.signals),
-                signals,
-            ),
-            rows(
-                "faults",
-                (number for feature in gone for number in feature.faults),
-                faults,
-            ),
+            rows("parameters", (number for feature in gone for number in feature.parameters), parameters),
+            rows("signals", (name for feature in gone for name in feature.signals), signals),
+            rows("faults", (number for feature in gone for number in feature.faults), faults),
         ]
     except (KeyError, ValueError) as error:
         raise ValueError(f"{FEATURE}: {error}") from error
@@ -368,13 +326,7 @@ def write_for_cmake(folder: Path, name: str) -> None:
     sources = write(folder, name)
     known = {feature.name for feature in features}
     outside = [feature for feature in edition.features if feature.name not in known]
-    files = [
-        Path(__file__),
-        Path(pack_text.__file__),
-        Path(word_code.__file__),
-        edition.file,
-        *pack_text.files(ROOT),
-    ]
+    files = [Path(__file__), Path(pack_text.__file__), Path(word_code.__file__), edition.file, *pack_text.files(ROOT)]
     files += [feature.folder / FEATURE for feature in (*features, *outside)]
     text = set_list("composed_sources", (path.resolve().as_posix() for path in sources))
     text += set_list("composed_from", (path.resolve().as_posix() for path in files))

@@ -22,17 +22,7 @@ AS_IN = {"drive": (), "minimal": ("--set", "flying_start=0", "--set", "wiring_ch
 # level of minimal has none of the bus's, so a control interrupt begins some ticks of 10 ns earlier or later, and with
 # it what it does itself in a start: gates on and off at no current, where the plant's solver ends a step. From there on
 # the last bit of what it integrates is another one. The test below shows that it is the bus alone.
-PLANT = {
-    "torque",
-    "i_a",
-    "i_b",
-    "i_c",
-    "v_dc",
-    "load_torque",
-    "told_angle",
-    "told_cross",
-    "told_speed",
-}
+PLANT = {"torque", "i_a", "i_b", "i_c", "v_dc", "load_torque", "told_angle", "told_cross", "told_speed"}
 LAST_BIT = 1e-6  # some times that of the record's numbers, which have 24 bits
 SCENARIOS = ("A10", "A16", "A18b")
 
@@ -53,17 +43,7 @@ def recorded(edition: str, scenario: str, where: Path, *options: str) -> dict[st
     """Every run of a scenario, by its file's name."""
     folder = where / edition / "".join(options) / scenario
     if not folder.exists():
-        on(
-            edition,
-            "-m",
-            "stillspin",
-            "run",
-            scenario,
-            "--no-plots",
-            "--out",
-            str(folder),
-            *options,
-        )
+        on(edition, "-m", "stillspin", "run", scenario, "--no-plots", "--out", str(folder), *options)
     return {path.name: pd.read_parquet(path) for path in sorted((folder / "runs").glob("*.parquet"))}
 
 
@@ -84,10 +64,7 @@ def as_lab(run: pd.DataFrame, lab: pd.DataFrame) -> None:
 @pytest.mark.parametrize("scenario", SCENARIOS)
 @pytest.mark.parametrize("edition", ["drive", "minimal"])
 def test_in_a_run_the_drive_does_bit_for_bit_what_lab_does(edition: str, scenario: str, where: Path) -> None:
-    lab, own = (
-        recorded("lab", scenario, where, *AS_IN[edition]),
-        recorded(edition, scenario, where),
-    )
+    lab, own = recorded("lab", scenario, where, *AS_IN[edition]), recorded(edition, scenario, where)
     assert lab and lab.keys() == own.keys()
     for name, run in own.items():
         as_lab(run, lab[name])
@@ -131,10 +108,7 @@ def test_with_the_bus_and_the_flying_start_minimal_is_lab_to_the_last_bit_of_the
 
 def test_without_console_and_link_the_drive_runs_as_ever(where: Path, by_lab: pd.DataFrame) -> None:
     quiet = where / "quiet.txt"
-    quiet.write_text(
-        "drive\nsources/observer\nstart\nstart/flying\nboard\nstore\nscope\n",
-        encoding="utf-8",
-    )
+    quiet.write_text("drive\nsources/observer\nstart\nstart/flying\nboard\nstore\nscope\n", encoding="utf-8")
     as_lab(played(linked(quiet), where / "quiet.parquet"), by_lab)
 
 
@@ -170,20 +144,8 @@ print("suggested:", desk.type("scopes", 300))
 
 
 def test_what_is_left_out_is_refused_by_its_edition() -> None:
-    said = on(
-        "minimal",
-        "-c",
-        f"{DESK}desk = Desk({{}}){REFUSALS}",
-        str(Path(__file__).parent),
-    )
-    for name in (
-        "flux_low",
-        "can_node",
-        "load_angle",
-        "flying_start",
-        "if_speed",
-        "look",
-    ):
+    said = on("minimal", "-c", f"{DESK}desk = Desk({{}}){REFUSALS}", str(Path(__file__).parent))
+    for name in ("flux_low", "can_node", "load_angle", "flying_start", "if_speed", "look"):
         assert f"'{name}' is not in this edition of the firmware, minimal" in said
     assert "there is no parameter 'flux'" in said, "what no edition has"
     assert "flux_high" not in said, "nor is it suggested"
@@ -222,11 +184,7 @@ with virtual_ask() as ask:
 print(json.dumps([requests, commands, faults, [status.store, status.save_progress, status.unsaved], who.edition]))
 """
 UNKNOWN, RANGE, EDITION = 1, 2, 8
-SCOPE, LOOK, HIL = (
-    set(range(0x10, 0x15)),
-    {0x17},
-    {0x20, 0x22},
-)  # HIL_STEP takes any length
+SCOPE, LOOK, HIL = set(range(0x10, 0x15)), {0x17}, {0x20, 0x22}  # HIL_STEP takes any length
 RESULT, COMMISSION, STORE, BEGIN_LOOK = {0x16}, {6}, {7, 8, 9}, {10}
 LEFT_OUT_REQUESTS = {
     "lab": (set(), set()),
@@ -235,18 +193,11 @@ LEFT_OUT_REQUESTS = {
     "minimal": (SCOPE | RESULT | LOOK | HIL, COMMISSION | STORE | BEGIN_LOOK),
 }
 
-LEFT_OUT_FAULTS = {
-    "lab": 0,
-    "drive": 1,
-    "hil": 1,
-    "minimal": 5,
-}  # the encoder's; those of the wiring
+LEFT_OUT_FAULTS = {"lab": 0, "drive": 1, "hil": 1, "minimal": 5}  # the encoder's; those of the wiring
 
 
 @pytest.mark.parametrize("edition", LEFT_OUT_REQUESTS)
-def test_a_request_of_what_is_left_out_is_told_from_one_that_no_edition_knows(
-    edition: str,
-) -> None:
+def test_a_request_of_what_is_left_out_is_told_from_one_that_no_edition_knows(edition: str) -> None:
     """Every number that there can be: lab has them all, so what it does not know nobody does."""
     lab, own = (json.loads(on(name, "-c", ASKED)) for name in ("lab", edition))
     words = [f"not in this edition of the firmware, {edition}"]
@@ -264,8 +215,7 @@ def test_a_request_of_what_is_left_out_is_told_from_one_that_no_edition_knows(
 
 
 @pytest.mark.parametrize(
-    ("edition", "way"),
-    [("hil", "--port"), ("hil", "--can"), ("lab", "--port"), ("drive", "--port")],
+    ("edition", "way"), [("hil", "--port"), ("hil", "--can"), ("lab", "--port"), ("drive", "--port")]
 )
 def test_a_board_is_compared_with_a_virtual_drive_of_its_own_edition(
     edition: str, way: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -276,15 +226,7 @@ def test_a_board_is_compared_with_a_virtual_drive_of_its_own_edition(
     with board(tmp_path, "--speed", "0") as port:
         where = port if way == "--port" else str(tmp_path / "can")
         options = ("--run", "creep", "--check", way, where, "--json", str(file))
-        said = on(
-            "minimal",
-            "-m",
-            "stillspin",
-            "hil",
-            "A10",
-            *options,
-            expected=int(edition == "drive"),
-        )
+        said = on("minimal", "-m", "stillspin", "hil", "A10", *options, expected=int(edition == "drive"))
     if edition == "drive":
         assert "not in this edition of the firmware, drive" in said
         return
@@ -300,15 +242,7 @@ def test_the_dbc_that_is_exported_is_that_of_the_edition(
     file = tmp_path / "own.dbc"
     monkeypatch.setenv("STILLSPIN_EDITION", edition)
     with board(tmp_path):
-        on(
-            "lab",
-            "-m",
-            "stillspin",
-            "can",
-            f"can:slcan:{tmp_path / 'can'}",
-            "--export",
-            str(file),
-        )
+        on("lab", "-m", "stillspin", "can", f"can:slcan:{tmp_path / 'can'}", "--export", str(file))
     own, all_editions = cantools.database.load_file(file), can.database(1)
     assert [(m.name, m.frame_id, len(m.signals)) for m in own.messages] == [
         (m.name, m.frame_id, len(m.signals)) for m in all_editions.messages
@@ -343,9 +277,7 @@ def test_without_a_store_the_status_says_that_nothing_can_be_saved() -> None:
     assert json.loads(on("drive", "-c", ASKED))[3][0] != absent
 
 
-def test_the_client_names_the_edition_that_has_not_what_was_asked_for(
-    tmp_path: Path,
-) -> None:
+def test_the_client_names_the_edition_that_has_not_what_was_asked_for(tmp_path: Path) -> None:
     """Exit status 1: the drive's answer, not a wrong name."""
     file = tmp_path / "parameters.toml"
     drive = ("--drive", "virtual:")
@@ -406,12 +338,7 @@ IN_FORCE = "the saved values are in force"
 
 def switch_on(edition: str, memory: Path, *lines: str) -> list[str]:
     said = on(
-        edition,
-        "-c",
-        f"from pathlib import Path{DESK}{SWITCHED_ON}",
-        str(Path(__file__).parent),
-        str(memory),
-        *lines,
+        edition, "-c", f"from pathlib import Path{DESK}{SWITCHED_ON}", str(Path(__file__).parent), str(memory), *lines
     )
     return said.splitlines()
 
@@ -448,9 +375,7 @@ def test_a_save_of_a_smaller_edition_keeps_what_it_has_not(edition: str, memory:
     assert has("lab", memory, flux_low="123.0", can_node="5", speed_ramp="700")
 
 
-def test_a_larger_edition_has_defaults_for_what_a_smaller_one_did_not_save(
-    tmp_path: Path,
-) -> None:
+def test_a_larger_edition_has_defaults_for_what_a_smaller_one_did_not_save(tmp_path: Path) -> None:
     memory = tmp_path / "eeprom"
     assert switch_on("drive", memory, "set speed_ramp 600", "save")[-1] == SAVED
     assert "values saved by another firmware are in force" in store_of("lab", memory)
@@ -469,18 +394,9 @@ def test_an_edition_without_a_store_does_not_touch_the_memory(memory: Path) -> N
     assert has("lab", memory, flux_low="123.0", can_node="5", speed_ramp="500")
 
 
-def test_of_what_was_saved_an_edition_refuses_the_source_that_it_has_not_and_no_more(
-    memory: Path,
-) -> None:
+def test_of_what_was_saved_an_edition_refuses_the_source_that_it_has_not_and_no_more(memory: Path) -> None:
     assert switch_on("lab", memory, "set position_source 8", "save")[-1] == SAVED
     assert "values saved by another firmware are in force" in store_of("drive", memory)
     assert "; 1 refused, now at their default: position_source" in switch_on("drive", memory, "load")[-1]
     assert has("drive", memory, position_source="4", can_node="5", speed_ramp="500")
-    assert has(
-        "lab",
-        memory,
-        position_source="8",
-        flux_low="123.0",
-        can_node="5",
-        speed_ramp="500",
-    )
+    assert has("lab", memory, position_source="8", flux_low="123.0", can_node="5", speed_ramp="500")
