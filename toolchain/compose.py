@@ -10,7 +10,6 @@ a feature.toml, or a path from where the list is. What a feature.toml may say:
     headers     what declares the rows: in its folder, or from the root
     parameters  numbers of the parameters that are its own
     signals     names of the signals that are its own
-    faults      numbers of the faults that only it brings about
     words       kinds of words (text/word_list.h) that are its own
     instead     by source outside of the folder that only this feature has a use for: what an image without it has
     rows        by table: what stands there, with its place: a number, smaller ones come first; commands of the console
@@ -35,7 +34,7 @@ import word_code
 ROOT = pack_text.ROOT
 EDITIONS, FEATURE = "firmware/editions", "feature.toml"
 PARAMETERS, SIGNALS = "firmware/dictionary/parameter_list.h", "firmware/dictionary/signal_list.h"
-FAULTS = "firmware/dictionary/fault_list.h"
+FAULTS = "firmware/**/fault_list.h"
 KINDS, KIND = "firmware/text/catalogue.h", re.compile(r"CATALOGUE_([A-Z]+) = (\d+)")
 TEXTS, CMAKE = "packed_text_table.c", "composed.cmake"
 
@@ -98,10 +97,16 @@ class Feature:
     headers: tuple[str, ...] = ()
     parameters: tuple[int, ...] = ()
     signals: tuple[str, ...] = ()
-    faults: tuple[int, ...] = ()
     words: tuple[str, ...] = ()
     instead: dict[str, str] = field(default_factory=dict)
     rows: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def faults(self) -> tuple[int, ...]:
+        """Numbers of the faults that only it brings about: those of its list."""
+        file = self.folder / "fault_list.h"
+        rows = pack_text.rows(file.read_text(encoding="utf-8"), "FAULT") if file.exists() else []
+        return tuple(int(row[0]) for row in rows)
 
     def places(self, table: str) -> list[tuple[int, str]]:
         """Its rows in a table with their places."""
@@ -227,7 +232,7 @@ def left_out_text(edition: Edition, root: Path) -> str:
     """
     parameters = [int(row[0]) for row in pack_text.rows(pack_text.whole(root, PARAMETERS), "PARAMETER")]
     signals = [row[0] for row in pack_text.rows(pack_text.whole(root, SIGNALS), "SIGNAL")]
-    faults = [int(row[0]) for row in pack_text.rows(pack_text.whole(root, FAULTS), "FAULT")]
+    faults = [int(row[0]) for row in pack_text.rows_of(root, FAULTS, "FAULT")]
     kinds = dict(KIND.findall((root / KINDS).read_text(encoding="utf-8")))
     gone = left_out(edition, root)
 
@@ -294,6 +299,7 @@ def made(edition: Edition, root: Path = ROOT) -> dict[str, str]:
     kept = ["" if name in needless else text for name, text in texts.items()]
     return {
         pack_text.NUMBERS: pack_text.numbers(list(texts)),
+        **pack_text.joined(root),
         TEXTS: pack_text.pack(kept, sum(1 for name in texts if pack_text.NAME.match(name))),
         "left_out.c": left_out_text(edition, root),
         **{f"{name}.c": table_text(name, edition, root) for name in TABLES},

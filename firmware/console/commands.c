@@ -54,10 +54,10 @@ static bool list_commands(uint16_t step) {
   return step < COMMANDS;
 }
 
-// The command that each line of help_list.h is about.
+// The command that each line of help is about.
 #define HELP(command, number, text) TEXT_COMMAND_##command,
 static const packed_text_t explains[] = {
-#include "firmware/console/help_list.h"
+#include "firmware/console/all_help.h"
 };
 #undef HELP
 

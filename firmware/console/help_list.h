@@ -1,4 +1,5 @@
-// What `help <command>` says beyond the command's own line. HELP(command, number, text): one line. No include guard: it
+// What `help <command>` says beyond the command's own line. HELP(command, number, text): one line. What a feature's
+// command says is in a list of the same form in its folder, and the build makes console/all_help.h of them all, which
 // is included with different meanings of HELP.
 
 HELP(list, 1, "list            all parameters")
@@ -11,18 +12,5 @@ HELP(start, 2, "start hold      while a key is held (the space bar); stops when 
 HELP(start, 3, "start free      until 'stop', even without this terminal; also ends the watch over a running motor")
 HELP(start, 4, "start           watched by the program at the other end, which keeps it alive (stillspin console)")
 HELP(ref, 1, "ref 600 rpm     ref -50")
-HELP(look, 1, "From 'ready': short-circuits the motor twice, up to a millisecond each, and measures the current.")
-HELP(look, 2, "It brakes a turning shaft a little. The power stage is off again when the answer comes.")
 HELP(watch, 1, "watch           state, speed, current, DC link")
 HELP(watch, 2, "watch load_torque current_q")
-HELP(commission, 1,
-     "commission start hold from 'ready'; the shaft must be free to turn. 'stop' ends it; see help start")
-HELP(commission, 2, "commission            how far it is")
-HELP(commission, 3, "commission results    what was measured, and why it is in use or not")
-HELP(scope, 1, "scope channels current_q speed     one to four signals (command signals)")
-HELP(scope, 2, "scope trigger speed rising 100 5   rising, falling, either, above, below; or: scope trigger now. 5 is")
-HELP(scope, 7, "the hysteresis: it has to rise from below 95; by default a quarter of the signal's recent span")
-HELP(scope, 3, "scope every 10     one record in every 10 control interrupts of 100 us")
-HELP(scope, 4, "scope before 128   128 of the 512 records before the trigger")
-HELP(scope, 5, "scope mode auto    or single")
-HELP(scope, 6, "scope arm, scope stop, scope, scope print 16     print 16 shows every 16th record")

@@ -7,7 +7,7 @@
 
 #define FAULT(number, name, words, remedy) FAULT_##name = (number),
 typedef enum {
-#include "firmware/dictionary/fault_list.h"
+#include "firmware/dictionary/all_faults.h"
 } drive_fault_t;
 #undef FAULT
 

@@ -41,10 +41,10 @@ struct Row {
 const Row kListed[] = {
 #include "firmware/can/phrase_list.h"
 #include "firmware/config/phrase_list.h"
+#include "firmware/console/all_help.h"
 #include "firmware/console/command_list.h"
-#include "firmware/console/help_list.h"
 #include "firmware/console/phrase_list.h"
-#include "firmware/dictionary/fault_list.h"
+#include "firmware/dictionary/all_faults.h"
 #include "firmware/dictionary/parameter_list.h"
 #include "firmware/dictionary/signal_list.h"
 #include "firmware/dictionary/unit_list.h"
@@ -184,7 +184,7 @@ TEST(Words, AreThoseOfTheirKindAndCode) {
 #define FAULT(number, name, words, remedy)      \
   expect_words(CATALOGUE_FAULT, number, words); \
   expect_words(CATALOGUE_REMEDY, number, remedy);
-#include "firmware/dictionary/fault_list.h"
+#include "firmware/dictionary/all_faults.h"
 #undef FAULT
 }
 

@@ -28,7 +28,7 @@ namespace {
 
 #define FAULT(number, name, words, remedy) +1
 constexpr int kFaults = 0
-#include "firmware/dictionary/fault_list.h"
+#include "firmware/dictionary/all_faults.h"
     ;
 #undef FAULT
 

@@ -158,7 +158,7 @@ void fuzz_put_into(uint16_t state) {
 void fuzz_fault(uint16_t which) {
   static const drive_fault_t faults[] = {
 #define FAULT(number, name, words, remedy) FAULT_##name,
-#include "firmware/dictionary/fault_list.h"
+#include "firmware/dictionary/all_faults.h"
 #undef FAULT
   };
   const drive_fault_t fault = faults[which % (uint16_t)(sizeof faults / sizeof faults[0])];

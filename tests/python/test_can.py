@@ -106,7 +106,8 @@ def test_check_sum_is_the_firmwares():
 
 def test_words_of_states_and_faults_are_those_of_the_firmware():
     status = drive_can.database().get_message_by_name("STATUS")
-    faults = re.findall(r"^FAULT\((\d+), (\w+)", (ROOT / "firmware/dictionary/fault_list.h").read_text(), re.MULTILINE)
+    lists = "".join(path.read_text() for path in (ROOT / "firmware").rglob("fault_list.h"))
+    faults = re.findall(r"^FAULT\((\d+), (\w+)", lists, re.MULTILINE)
     assert faults
     ours = {int(number): name.lower() for number, name in faults}
     assert {k: str(v) for k, v in status.get_signal_by_name("FAULT").choices.items()} == ours

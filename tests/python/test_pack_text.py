@@ -101,6 +101,18 @@ def test_texts_are_numbered_as_they_are_packed() -> None:
     assert names == [*pack_text.texts(), "PACKED_TEXTS"]
 
 
+def test_a_list_has_the_rows_of_every_folder() -> None:
+    """Faults by their numbers, which their words are found by; what the console's own commands say comes first."""
+    faults = [int(row[0]) for row in pack_text.rows_of(ROOT, "firmware/**/fault_list.h", "FAULT")]
+    assert faults == list(range(len(faults)))
+    assert pack_text.rows_of(ROOT, "firmware/**/help_list.h", "HELP")[0][:2] == ["list", "1"]
+    for header, text in pack_text.joined(ROOT).items():
+        name = Path(pack_text.JOINED[header]).name
+        folders = {path.relative_to(ROOT).as_posix() for path in (ROOT / "firmware").rglob(name)}
+        assert len(folders) > 3
+        assert set(re.findall(r'#include "([^"]+)"', text)) == folders
+
+
 def test_two_texts_of_a_name_are_refused(tmp_path: Path) -> None:
     for folder in ("scope", "can"):
         (tmp_path / "firmware" / folder).mkdir(parents=True)

@@ -118,7 +118,7 @@ def part_of(path: str) -> str | None:
 
 def _resolve(root: Path, source: str, name: str) -> str | None:
     """The file of the tree that ``name``, included by ``source``, means: beside it or from the root."""
-    if name == pack_text.NUMBERS:
+    if name in {pack_text.NUMBERS, *pack_text.JOINED}:
         return name  # the build makes it
     for base in (posixpath.dirname(source), ""):
         candidate = posixpath.normpath(posixpath.join(base, name))
