@@ -24,7 +24,10 @@ from stillspin.tune.server import Server
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "sim_host" / "stillspin"
 GONE = re.compile("ERR_CONNECTION_REFUSED|ERR_CONNECTION_RESET|WebSocket connection to|status of 403")
-LONG = ("test_scenarios", "test_hil", "test_flash_broken", "test_tune_on_board", "test_client_on_board")
+LONG = (
+    *("test_scenarios", "test_interrupted", "test_editions", "test_hil", "test_ways", "test_flash_broken"),
+    *("test_client_on_board", "test_faults", "test_tune_on_board", "test_checks", "test_wheel", "test_command_line"),
+)
 
 
 def pytest_collection_modifyitems(items):

@@ -32,6 +32,10 @@ COMMANDS = {
     "hil": ("hil", "A14", "A10", "A11", "--port", "virtual", "--json", "rows.json"),
 }
 WORKED = 6.0  # s of computing by one worker, when there is nothing else to see
+WAYS = [
+    *((name, True) for name in COMMANDS),
+    *((name, False) for name in ("reproduce", "hil")),  # the others have the workers of reproduce
+]
 
 
 def of_session(leader):
@@ -63,8 +67,7 @@ def something_is_done(name, folder, leader):
     return any(seconds > WORKED for number, seconds in of_session(leader).items() if number != leader)
 
 
-@pytest.mark.parametrize("all_of_them", [True, False], ids=["Ctrl-C", "the command alone"])
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize(("name", "all_of_them"), WAYS)
 def test_what_is_done_is_written_and_nobody_is_left(tmp_path, name, all_of_them):
     words = [*COMMANDS[name], "--jobs", "2"]
     if name != "explain":
