@@ -36,8 +36,8 @@ static inline int32_t dead_time_delay_ticks(const dead_time_config_t* c, int32_t
   return q_shr(c->middle_q13 + (int16_t)in_band_q12 * (int32_t)c->range_ticks, 13);
 }
 
-/// With a current below edge_band an edge is not certain: with the other sign than predicted it comes up to blocked -
-/// released ticks early or late.
+/// With a current below edge_band an edge is not certain: with the other sign than predicted it comes up to turn-on
+/// less turn-off delay early or late.
 static inline bool dead_time_is_in_doubt(const dead_time_config_t* c, int32_t blocking_q12) {
   return (uint32_t)blocking_q12 + c->doubt_q12 <= 2u * c->doubt_q12;
 }

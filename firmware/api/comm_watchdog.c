@@ -3,7 +3,7 @@
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/commands.h"
 
-static comm_watchdog_t guarded;
+static comm_watchdog_t watcher;
 static uint32_t held_by;
 static uint32_t heard_ms;
 static uint32_t beside_text;  // the last number over the serial port, within link_timeout
@@ -12,14 +12,14 @@ static bool energised;  // the start has been carried out
 static bool stopped;
 
 void comm_watchdog_reset(void) {
-  guarded = COMM_WATCHDOG_NONE;
+  watcher = COMM_WATCHDOG_NONE;
   beside_text = 0;
   energised = false;
   stopped = false;
 }
 
 void comm_watchdog_begin(comm_watchdog_t port, uint32_t holder) {
-  guarded = port;
+  watcher = port;
   held_by = holder;
   heard_ms = drive_time_ms();
   energised = false;
@@ -27,8 +27,8 @@ void comm_watchdog_begin(comm_watchdog_t port, uint32_t holder) {
 }
 
 bool comm_watchdog_release(void) {
-  if (guarded == COMM_WATCHDOG_BUS || guarded == COMM_WATCHDOG_OWN) return false;
-  guarded = COMM_WATCHDOG_NONE;
+  if (watcher == COMM_WATCHDOG_BUS || watcher == COMM_WATCHDOG_OWN) return false;
+  watcher = COMM_WATCHDOG_NONE;
   return true;
 }
 
@@ -39,27 +39,27 @@ void comm_watchdog_heard(comm_watchdog_t port, uint32_t holder) {
     beside_text = holder;
     beside_text_ms = drive_time_ms();
   }
-  if (port == guarded && holder == held_by) heard_ms = drive_time_ms();
+  if (port == watcher && holder == held_by) heard_ms = drive_time_ms();
 }
 
 bool comm_watchdog_key(void) {
-  if (guarded == COMM_WATCHDOG_KEYS) heard_ms = drive_time_ms();
-  return guarded == COMM_WATCHDOG_KEYS;
+  if (watcher == COMM_WATCHDOG_KEYS) heard_ms = drive_time_ms();
+  return watcher == COMM_WATCHDOG_KEYS;
 }
 
 uint32_t comm_watchdog_beside_text(void) { return beside_text; }
 
 void comm_watchdog_service(void) {
   if (is_over(beside_text_ms)) beside_text = 0;
-  if (guarded == COMM_WATCHDOG_NONE) return;
+  if (watcher == COMM_WATCHDOG_NONE) return;
   const bool now = drive_is_energised();
   if ((energised && !now) || drive_state() == DRIVE_FAULT) {
-    guarded = COMM_WATCHDOG_NONE;
+    watcher = COMM_WATCHDOG_NONE;
     return;
   }
   energised = now;
-  if (guarded == COMM_WATCHDOG_OWN || !is_over(heard_ms)) return;
-  guarded = COMM_WATCHDOG_NONE;
+  if (watcher == COMM_WATCHDOG_OWN || !is_over(heard_ms)) return;
+  watcher = COMM_WATCHDOG_NONE;
   stopped = energised;
   if (parameters.link_reaction == LINK_REACTION_COAST) {
     drive_command_coast();
@@ -68,7 +68,7 @@ void comm_watchdog_service(void) {
   }
 }
 
-bool comm_watchdog_is_on(void) { return guarded != COMM_WATCHDOG_NONE; }
+bool comm_watchdog_is_on(void) { return watcher != COMM_WATCHDOG_NONE; }
 
 bool comm_watchdog_is_of(uint32_t holder) { return comm_watchdog_is_on() && holder != 0u && holder == held_by; }
 

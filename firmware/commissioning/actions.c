@@ -3,10 +3,10 @@
 #include "firmware/api/status.h"
 #include "firmware/commissioning/outcome.h"
 
-answer_status_t action_commission(comm_watchdog_t guard, uint32_t holder, octet_writer_t* why) {
+answer_status_t action_commission(comm_watchdog_t watchdog, uint32_t holder, octet_writer_t* why) {
   const answer_status_t status = action_may_begin(why);
   if (status != ANSWER_OK) return status;
-  comm_watchdog_begin(guard, holder);
+  comm_watchdog_begin(watchdog, holder);
   drive_command_commission();
   return ANSWER_OK;
 }

@@ -9,8 +9,8 @@
 extern "C" {
 #endif
 
-/// Guard and holder as of action_start.
-answer_status_t action_commission(comm_watchdog_t guard, uint32_t holder, octet_writer_t* why);
+/// Watchdog and holder as of action_start.
+answer_status_t action_commission(comm_watchdog_t watchdog, uint32_t holder, octet_writer_t* why);
 
 /// Writes into feature_status how far it is.
 void commissioning_status_update(void);

@@ -45,23 +45,21 @@ static bool list_results(uint16_t step) {
 }
 
 static void begin_commissioning(const words_of_line_t* a) {
-  comm_watchdog_t guard;
-  if (!choose_watchdog(a, 1, &guard)) return;
-  const bool begins = action_commission(guard, comm_watchdog_beside_text(), line_begin()) == ANSWER_OK;
+  comm_watchdog_t watchdog;
+  if (!choose_watchdog(a, 1, &watchdog)) return;
+  const bool begins = action_commission(watchdog, comm_watchdog_beside_text(), line_begin()) == ANSWER_OK;
   line_answer(begins, SAY_commissioning_the_shaft_will_turn_stop_ends);
-  if (begins) say_watchdog(guard);
+  if (begins) say_watchdog(watchdog);
 }
 
 void command_commission(const words_of_line_t* a) {
-  if (a->count == 0u) {
-    show_commissioning();
-  } else if (word_is(a, 0, TEXT_COMMAND_NAME_start)) {
+  const bool results = word_is(a, 0, SAY_results);
+  if (word_is(a, 0, TEXT_COMMAND_NAME_start)) {
     begin_commissioning(a);
-  } else if (!word_is(a, 0, SAY_results)) {
+  } else if (a->count != 0u && !results) {
     line_refused(SAY_commission_commission_start_or_commission_re);
-  } else if (drive_commissioning_count() == 0u) {
-    line_of(SAY_nothing_has_been_measured_since_power_on);
   } else {
-    console_run(list_results, false);
+    show_commissioning();
+    if (results) console_run(list_results, false);
   }
 }

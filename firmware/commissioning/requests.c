@@ -6,9 +6,9 @@
 #include "firmware/commissioning/outcome.h"
 
 static answer_status_t request_commission(request_t* r) {
-  comm_watchdog_t guard;
+  comm_watchdog_t watchdog;
   uint32_t holder;
-  return request_takes_guard(r, &guard, &holder) ? action_commission(guard, holder, &r->answer) : ANSWER_RANGE;
+  return request_takes_watchdog(r, &watchdog, &holder) ? action_commission(watchdog, holder, &r->answer) : ANSWER_RANGE;
 }
 
 static answer_status_t request_commission_result(request_t* r) {

@@ -153,7 +153,7 @@ static bool load_control(drive_config_t* c) {
          current_controller_design(&c->current, &c->nameplate, &current);
 }
 
-// 1 / (time constant in turns), Q30, of a time in ms, Q8; 30 s means none.
+// 1 / (time constant in slots of a kind), Q30, of a time in ms, Q8; 30 s means none.
 static int32_t share_per_slot_q30(int32_t time_q8) {
   return (time_q8 >= 30000L * 256L) ? 0 : q_div(256L * (int32_t)SCHEDULE_SLOTS, time_q8 * DRIVE_PERIODS_PER_MS, 30);
 }

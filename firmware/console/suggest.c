@@ -116,6 +116,7 @@ static void refuse_left_out(void) {
   put_word(w, &wanted);
   put_packed(w, SAY_is_not_in_this_edition);
   put_text(w, edition_name);
+  put_packed(w, SAY_see_editions_in_the_book);
   line_end_refused();
 }
 

@@ -18,10 +18,10 @@ void drive_control_step(drive_t* d) {
   const bool windows = d->samples.count > 0u;
   hal_profile_step(windows ? CYCLES_READ_SAMPLES : CYCLES_READ_SLICES);
   drive_estimate(d);
-  hal_profile_step(windows ? CYCLES_ESTIMATE : CYCLES_ESTIMATE_BLIND);
+  hal_profile_step(windows ? CYCLES_ESTIMATE : CYCLES_ESTIMATE_NO_WINDOWS);
   drive_protect(d);
   drive_sequence(d);
-  hal_profile_step(windows ? CYCLES_SUPERVISE : CYCLES_SUPERVISE_BLIND);
+  hal_profile_step(windows ? CYCLES_SUPERVISE : CYCLES_SUPERVISE_NO_WINDOWS);
   drive_control_speed(d);
   drive_control_current(d);
   hal_profile_step(CYCLES_CONTROL);

@@ -5,7 +5,7 @@
 // itself the right way round at some hundred rpm in the wrong direction. Once confirmed the watch is over. The check of
 // synchronism may be faster; then the sign seen so far tells which fault it is.
 //
-// Axis and back-EMF are looked at once in a turn of what is slow (position.c), in different periods of it; the axis a
+// Axis and back-EMF are looked at in slots of their own (schedule.c), once in each round of them; the axis a
 // few periods after the windows were regressed. Without an axis the back-EMF says nothing: what had been seen of it
 // until then stays.
 
@@ -16,7 +16,7 @@
 
 #define SUM_END_Q12 1073741824L       // of 64 periods of 4096 V
 #define VOLTS_END_Q12 16777216L       // 4096 V
-#define PERIODS_END 10000L            // a second: the turns are much shorter
+#define PERIODS_END 10000L            // a second: a round of the slots is much shorter
 #define BANDWIDTH_STEP_Q30 12884902L  // 120 rad/s * T
 
 polarity_watch_t polarity_watch;

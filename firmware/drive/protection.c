@@ -74,7 +74,7 @@ static bool lost_synchronism(drive_t* d, int32_t periods, int32_t ahead_bpp, int
                            measured ? 0 : apart_bam);
 }
 
-// In its turns only, where a period says what the next ones do, or the observer's residuals are those of all periods
+// In its slot only, where a period says what the next ones do, or the observer's residuals are those of all periods
 // since; alternating pulses give each period windows of its own.
 static bool judges_now(const drive_t* d) {
   return d->schedule.judges || (d->modulation.state.is_alternating && !position_observer_reads(d));

@@ -37,7 +37,7 @@ static void reload(void) {
   const uint16_t state = hal_irq_disable();
   hal_replay_work_begin(REPLAY_RELOADED);
   drive.request.reload = false;
-  drive_select_source();
+  drive.source = drive_source_selected();
   drive.config_valid = valid;
   drive.conflict = conflict;
   drive.conflict_known = true;

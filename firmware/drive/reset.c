@@ -30,7 +30,7 @@ void drive_reset(void) {
   drive.zero_current_a_q8 = drive.zero_current_b_q8 = DRIVE_MIDDLE_Q8;
   drive.trim.offset_a_q8 = drive.zero_current_a_q8;
   drive.trim.offset_b_q8 = drive.zero_current_b_q8;
-  drive_select_source();
+  drive.source = drive_source_selected();
   drive.config_valid = drive_config_load(&drive.config);
   drive.control.current_limit_q20 = interlock_current_limit();
   drive.model = drive.config.nameplate;

@@ -4,7 +4,7 @@
 #include "firmware/mode/mode.h"
 
 #define MOVED_Q20 131072L  // 0.125 A: so far from its operating point the model may be
-#define WAITED_MAX 3u      // turns in a row that give way
+#define WAITED_MAX 3u      // slots in a row that give way
 
 static const task_t tasks[DRIVE_PERIODS_PER_MS] = {TASK_SPEED, TASK_JUDGE_FIRST, TASK_SLOT, TASK_RENEW, TASK_SLOT,
                                                    TASK_FIELD, TASK_JUDGE,       TASK_SLOT, TASK_RENEW, TASK_SLOT};

@@ -12,10 +12,10 @@
 #define CYCLES_READ_SAMPLES 1000u
 #define CYCLES_READ_SLICES 400u  // no windows to evaluate
 #define CYCLES_ESTIMATE 2400u
-#define CYCLES_ESTIMATE_FLUX 400u   // beside the observer, which leaves its regression for it
-#define CYCLES_ESTIMATE_BLIND 900u  // without windows: the observers only predict
+#define CYCLES_ESTIMATE_FLUX 400u        // beside the observer, which leaves its regression for it
+#define CYCLES_ESTIMATE_NO_WINDOWS 900u  // without windows: the observers only predict
 #define CYCLES_SUPERVISE 620u
-#define CYCLES_SUPERVISE_BLIND 100u
+#define CYCLES_SUPERVISE_NO_WINDOWS 100u
 #define CYCLES_CONTROL 900u
 #define CYCLES_MODULATE 1400u
 #define CYCLES_SERIAL 120u  // two octets each way

@@ -33,7 +33,7 @@ typedef struct {
   ab_t ripple_q16;                              // ripple flux at the middles of all windows, added up, V period
   estimator_frame_t frames[ESTIMATOR_WINDOWS];  // the windows in the frame of who looks at them first, or in use
   uint16_t count;
-  slopes_scale_t scale;                     // of the sensors, renewed in a turn
+  slopes_scale_t scale;                     // of the sensors, renewed in a slot
   int32_t link_end_q16[ESTIMATOR_WINDOWS];  // DC link at the end of each window, unfiltered, V
   int32_t raw_a_q8, raw_b_q8;               // mean codes of the first burst, for the calibration
   int32_t link_q16;                         // filtered DC-link voltage, V

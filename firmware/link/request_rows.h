@@ -42,9 +42,9 @@ extern const request_row_t parameter_requests[];  // requests_parameters.c
 extern const request_row_t signal_requests[];     // requests_signals.c
 extern const request_row_t table_requests[];      // requests_tables.c
 
-/// Who watches over what a command starts, by its argument. False, and said, for a guard without a number: that is a
+/// Who watches over what a command starts, by its argument. False, and said, for a client without a number: that is a
 /// former client, and nobody could tell who keeps it alive.
-bool request_takes_guard(request_t* r, comm_watchdog_t* watchdog, uint32_t* holder);
+bool request_takes_watchdog(request_t* r, comm_watchdog_t* watchdog, uint32_t* holder);
 
 #if defined(__cplusplus)
 }

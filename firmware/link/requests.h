@@ -42,7 +42,7 @@ enum {
 
 /// Codes of REQUEST_COMMAND.
 enum {
-  COMMAND_START = 1,  // argument bit 0: guarded by the link, the whole is then the client's number
+  COMMAND_START = 1,  // argument bit 0: watched over by the link, the whole is then the client's number
   COMMAND_STOP = 2,
   COMMAND_COAST = 3,
   COMMAND_RESET = 4,

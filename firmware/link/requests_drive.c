@@ -10,7 +10,7 @@
 #include "firmware/mode/fault_history.h"
 #include "firmware/mode/mode.h"
 
-bool request_takes_guard(request_t* r, comm_watchdog_t* watchdog, uint32_t* holder) {
+bool request_takes_watchdog(request_t* r, comm_watchdog_t* watchdog, uint32_t* holder) {
   *holder = take_u32(&r->body);
   *watchdog = ((*holder & 1u) != 0u) ? r->port : COMM_WATCHDOG_NONE;
   if (*holder != 1u) return true;
@@ -21,7 +21,7 @@ bool request_takes_guard(request_t* r, comm_watchdog_t* watchdog, uint32_t* hold
 static answer_status_t request_start(request_t* r) {
   comm_watchdog_t watchdog;
   uint32_t holder;
-  return request_takes_guard(r, &watchdog, &holder) ? action_start(watchdog, holder, &r->answer) : ANSWER_RANGE;
+  return request_takes_watchdog(r, &watchdog, &holder) ? action_start(watchdog, holder, &r->answer) : ANSWER_RANGE;
 }
 
 static answer_status_t request_stop(request_t* r) {

@@ -57,7 +57,6 @@ extern drive_t drive;
 
 /// What is made of the parameters is to be made anew.
 void drive_parameters_changed(void);
-void drive_select_source(void);
 /// The one that the parameter selects; the observer where this edition leaves that out, and the drive does not start.
 const position_source_t* drive_source_selected(void);
 /// Whether that has this trait.

@@ -14,5 +14,3 @@ const position_source_t* drive_source_selected(void) {
 }
 
 bool drive_source_selected_has(uint16_t trait) { return (drive_source_selected()->traits & trait) != 0u; }
-
-void drive_select_source(void) { drive.source = drive_source_selected(); }

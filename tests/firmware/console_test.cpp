@@ -108,8 +108,8 @@ TEST_F(Console, WhatTheEditionHasNotIsNamedWithIt) {
                {"wiring", "start/flying"},     {"if_speed", "start/if_start"},      {"speed_limit", "drive"},
                {"zvv_terms", "sources/paper"}, {"encoder_trim", "sources/encoder"}, {"speed", "drive"}};
   for (const auto& n : names) {
-    const std::string left_out =
-        std::string("'") + n.name + "' is not in this edition of the firmware, " + edition_name + "\r\n";
+    const std::string left_out = std::string("'") + n.name + "' is not in this edition of the firmware, " +
+                                 edition_name + ": see 'Editions' in the book\r\n";
     EXPECT_EQ(command(std::string("get ") + n.name) == left_out, !missing_of({n.feature}).empty()) << n.name << text;
   }
 }

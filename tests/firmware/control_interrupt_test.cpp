@@ -32,8 +32,9 @@ TEST_F(ControlInterrupt, EveryStepTellsItsTimeOnce) {
     expected.push_back(static_cast<std::uint16_t>(cycles));
   }
   EXPECT_EQ(told(0), expected);
-  const Steps blind = {CYCLES_READ_SLICES, CYCLES_ESTIMATE_BLIND, CYCLES_SUPERVISE_BLIND,
-                       CYCLES_CONTROL,     CYCLES_MODULATE,       CYCLES_SERIAL};
+  const Steps blind = {
+      CYCLES_READ_SLICES, CYCLES_ESTIMATE_NO_WINDOWS, CYCLES_SUPERVISE_NO_WINDOWS, CYCLES_CONTROL, CYCLES_MODULATE,
+      CYCLES_SERIAL};
   EXPECT_EQ(told(inside::sampled_pattern().window_count), blind) << "without windows it is over earlier";
 }
 

@@ -40,6 +40,7 @@ struct Row {
 #define PHRASE(name, text) {SAY_##name, text},
 const Row kListed[] = {
 #include "firmware/can/phrase_list.h"
+#include "firmware/commissioning/phrase_list.h"
 #include "firmware/config/phrase_list.h"
 #include "firmware/console/all_help.h"
 #include "firmware/console/command_list.h"
@@ -50,6 +51,7 @@ const Row kListed[] = {
 #include "firmware/dictionary/unit_list.h"
 #include "firmware/hil/phrase_list.h"
 #include "firmware/hysteresis/phrase_list.h"
+#include "firmware/link/phrase_list.h"
 #include "firmware/scope/phrase_list.h"
 #include "firmware/sources/flux/phrase_list.h"
 #include "firmware/sources/paper/phrase_list.h"

@@ -18,8 +18,8 @@ static void match_sensors(drive_t* d, const regression_t* r, int32_t share_q30) 
 void source_learn(drive_t* d, const regression_t* r) {
   const bool inductance = is_slot(d, SLOT_INDUCTANCE);
   if (!(inductance || is_slot(d, SLOT_VOLTAGE)) || !d->position.is_near) return;
-  // A turn takes 5/4 as long where it has eight of ten periods, and 5/2 where it has four; there, learning 3/2 as much
-  // leaves the angle quieter.
+  // The slot comes 5/4 as seldom where eight of ten periods have one, and 5/2 where four have; there, learning 3/2 as
+  // much leaves the angle quieter.
   const int32_t share_q30 = d->config.adapt_share_q30 / 4 * (d->schedule.turning ? 6 : 5);
   const bool runs = drive_is_turning(d);
   if (inductance) inverse_inductance_step(&d->model, r, share_q30);
