@@ -214,10 +214,40 @@ def test_the_estimator_of_a_start_is_faster_where_the_shaft_is(native):
 
 def test_the_current_loop_is_faster_than_what_swings_by_itself(native):
     light = dataclasses.replace(similarity.REFERENCE, inertia=0.00455 / 50.0)
-    assert followed(native, inertia=light.inertia)["current_bandwidth"] == pytest.approx(2.1 * light.swing, abs=1.0)
+    told = {"polarity_current": 0.1}  # a usual segment
+    assert followed(native, told, inertia=light.inertia)["current_bandwidth"] == pytest.approx(2.1 * light.swing, abs=1)
     assert followed(native, inertia=0.00455 / 500.0)["current_bandwidth"] == 2600.0
     told = {"current_divider": 2.0}
     assert followed(native, told, inertia=0.00455 / 500.0)["current_bandwidth"] == 2080.0
+
+
+def test_the_current_loop_is_faster_where_a_segment_of_the_polarity_test_is_the_shortest(native):
+    light = dataclasses.replace(similarity.REFERENCE, inertia=0.00455 / 30.0)
+    assert followed(native, inertia=light.inertia)["current_bandwidth"] == pytest.approx(2.8 * light.swing, abs=1.0)
+    assert followed(native, inertia=0.00455 / 60.0)["current_bandwidth"] == 2600.0
+    smooth = dataclasses.replace(light, inductance_q=4.9e-3)  # is not asked for its polarity
+    told = followed(native, inertia=light.inertia, inductance_q=4.9e-3)["current_bandwidth"]
+    assert told == pytest.approx(2.1 * smooth.swing, abs=1.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "factor"),
+    [
+        ({}, 1.0),
+        ({"inertia": 1.9 * 0.00455}, 1.0),
+        ({"inertia": 2.1 * 0.00455}, 2.0),
+        ({"inertia": 40 * 0.00455}, 4.0),
+        ({"inertia": 0.00455 / 4, "inductance_d": 4.9e-4, "inductance_q": 7.8e-4}, 2.0),
+        ({"inertia": 40 * 0.00455, "inductance_q": 5.4e-3}, 1.0),
+    ],
+)
+def test_a_sharp_angle_on_a_heavy_rotor_is_told_as_a_noisier_one(changes, factor):
+    plant = stated(**changes)
+    assert similarity.noise(plant) == factor
+    assert nameplate.following(plant, {})["observer_noise"] == 100.0 * factor
+    assert "observer_noise" not in nameplate.following(plant, {"observer_noise": 70.0})
+    del plant["mechanics"]
+    assert similarity.noise(plant) == 1.0
 
 
 def test_the_watch_over_synchronism_bears_what_the_sensors_noise_looks_like(native):

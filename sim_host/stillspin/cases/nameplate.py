@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from stillspin import core
 from stillspin import scales as boards
-from stillspin.cases import open_loop
+from stillspin.cases import open_loop, similarity
 from stillspin.entry import Entry
 
 
@@ -73,6 +73,8 @@ def following(plant: core.Plant, stated: Mapping[str, float]) -> dict[str, float
         value = plant.get(row.section, {}).get(row.key)
         if value is not None and row.parameter not in stated:
             found[row.parameter] = round(float(value) * row.factor, row.digits)
+    if "observer_noise" in found:
+        found["observer_noise"] *= similarity.noise(plant)
     limit = stated.get("current_limit")
     if limit is not None and "map_current" not in stated:
         found["map_current"] = limit

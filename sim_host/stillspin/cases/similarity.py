@@ -24,7 +24,9 @@ TURN_LEAST, TURN_MOST = math.radians(1.5), math.radians(10.0)
 _SPEED_PERIOD = 1e-3  # s
 _FOLLOW_MOST = 2.0  # times as much as the reference
 _SWING = 2.1  # the current loop over the frequency at which EMF, inductance and inertia swing
+_SWING_TESTED = 2.8  # where a segment of the polarity test is the shortest
 _LOOP_END = 10400.0  # rad/s times three half periods and the divider's (firmware/config/rules.c)
+_NOISE_MOST = 4.0
 _DIGITS = 3  # that count; one more is kept
 _NEEDED = {
     "machine": ("pole_pairs", "inductance_d", "inductance_q", "magnet_flux", "rated_peak_current"),
@@ -133,6 +135,24 @@ def of(plant: core.Plant) -> Size | None:
     return Size(*values) if min(values) > 0.0 else None
 
 
+def noise(plant: core.Plant) -> float:
+    """How many times the sensors' noise the drive is told; 1 where an entry is missing.
+
+    The saliency's axis turns with the current, and until commissioning has measured that an observer takes the turn for
+    one of the shaft. The faster it believes an angle that is seen sharply, and the less the current that answers
+    accelerates the shaft, the more of a turn follows from a turn.
+    """
+    size = of(plant)
+    if size is None or open_loop.share(size.inductance_d, size.inductance_q) < open_loop.SALIENCY_LEAST:
+        return 1.0
+
+    def believed(size: Size) -> float:
+        return size.sharpness / (size.pole_pairs * size.acceleration)
+
+    ratio = believed(size) / believed(REFERENCE)
+    return float(2.0 ** math.floor(math.log2(min(max(ratio, 1.0), _NOISE_MOST))))
+
+
 def _power(ratio: float) -> float:
     """The nearest power of two."""
     return 2.0 ** round(math.log2(ratio))
@@ -235,8 +255,11 @@ def _by_agility(asked: _Asked, name: str) -> float:
 
 
 def _current_bandwidth(asked: _Asked, name: str) -> float:
-    most = _LOOP_END / (3.0 + asked.told.get("current_divider", 1.0))
-    return max(asked.default(name), min(math.ceil(_SWING * asked.size.swing), most))
+    """Faster than what swings by itself; more so where the EMF of the polarity test has to be met in half a segment."""
+    size, most = asked.size, _LOOP_END / (3.0 + asked.told.get("current_divider", 1.0))
+    tested = asked.told.get("polarity_current", _polarity_current(asked, "polarity_current"))
+    times = _SWING_TESTED if size.saliency > 0.0 and size.segment(tested) < SEGMENT else _SWING
+    return max(asked.default(name), min(math.ceil(times * size.swing), most))
 
 
 def _synchronism_floor(asked: _Asked, name: str) -> float:
