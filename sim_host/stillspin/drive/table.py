@@ -172,8 +172,8 @@ class Table:
 
     def _missing(self, kind: str, name: str, known: Iterable[str]) -> StillspinError:
         if self.edition not in ("", core.LAB) and name in core.known_names():
-            words = f"{kind} '{name}' is not in this edition of the firmware, {self.edition}; {core.LAB} has it"
-            return RefusedError(words, StatusCode.EDITION)
+            words = f"{kind} '{name}' is not in this edition of the firmware, {self.edition}"
+            return RefusedError(f"{words}: see 'Editions' in the book", StatusCode.EDITION)
         return InputError(f"no {kind} '{name}'{did_you_mean(name, known)}")
 
     def with_scales(self, now: Mapping[str, float], then: Mapping[str, float]) -> Table:
