@@ -1,6 +1,6 @@
 // What the speed law is told to follow, and what has its own period beside it.
 
-#include "tests/firmware/speed_task.hpp"
+#include "tests/firmware/speed_control.hpp"
 
 extern "C" {
 #include "firmware/config/config.h"

@@ -1,7 +1,7 @@
 // A drive in RUN whose speed task the test calls, period by period.
 
-#ifndef STILLSPIN_TESTS_FIRMWARE_SPEED_TASK_HPP
-#define STILLSPIN_TESTS_FIRMWARE_SPEED_TASK_HPP
+#ifndef STILLSPIN_TESTS_FIRMWARE_SPEED_CONTROL_HPP
+#define STILLSPIN_TESTS_FIRMWARE_SPEED_CONTROL_HPP
 
 #include "tests/firmware/fake_hal.hpp"
 

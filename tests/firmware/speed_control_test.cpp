@@ -1,7 +1,7 @@
 // Speed control, field weakening and their limits through the ten periods of a millisecond, on a drive that the test
 // has put where it wants it.
 
-#include "tests/firmware/speed_task.hpp"
+#include "tests/firmware/speed_control.hpp"
 
 #include <algorithm>
 
