@@ -73,25 +73,25 @@ void speed_controller_preset(speed_controller_t* s, int32_t current_q20) {
 }
 
 // A per bpp (Q40) times bpp to A Q20.
-static int32_t amps_q20(int32_t amps_per_bpp, int32_t speed_bpp) { return q_mul_sat(amps_per_bpp, speed_bpp, 20); }
+static int32_t amps_q20(int32_t amps_per_bpp, int32_t speed_bpp) { return qc_mul_sat(amps_per_bpp, speed_bpp, 20); }
 
 static int32_t predictive_step(speed_controller_t* s, const speed_controller_input_t* in) {
-  const int32_t distance = q_sub_sat(in->reference_bpp, in->speed_bpp);
-  const int32_t target_change = q_add_sat(in->reference_step_bpp, q_mul(distance, s->approach_q30, 30));
+  const int32_t distance = qc_sub_sat(in->reference_bpp, in->speed_bpp);
+  const int32_t target_change = qc_add_sat(in->reference_step_bpp, q_mul(distance, s->approach_q30, 30));
   const int32_t own_change = q_mul(in->speed_bpp, s->decay_q30 - ONE_Q30, 30);
   // (53): the current that would reach the target in one step, minus the one that flows, times k b.
-  const int32_t deadbeat = amps_q20(s->gains.amps_per_bpp, q_sub_sat(target_change, own_change));
+  const int32_t deadbeat = amps_q20(s->gains.amps_per_bpp, qc_sub_sat(target_change, own_change));
   const int32_t own = q_mix_sat(s->current_q20, deadbeat, s->gains.share_q30, 30);
-  const int32_t total = q_clamp(q_add_sat(own, in->load_current_q20), in->lowest_q20, in->highest_q20);
-  s->current_q20 = q_sub_sat(total, in->load_current_q20);
+  const int32_t total = q_clamp(qc_add_sat(own, in->load_current_q20), in->lowest_q20, in->highest_q20);
+  s->current_q20 = qc_sub_sat(total, in->load_current_q20);
   return total;
 }
 
 static int32_t pi_law_step(speed_controller_t* s, const speed_controller_input_t* in) {
-  const int32_t error = q_sub_sat(in->reference_bpp, in->speed_bpp);
+  const int32_t error = qc_sub_sat(in->reference_bpp, in->speed_bpp);
   const int32_t proportional = amps_q20(s->gains.pi_kp, error);
-  const int32_t integral = q_add_sat(s->integral_q20, amps_q20(s->gains.pi_ki, error));
-  const int32_t command_q20 = q_add_sat(proportional, integral);
+  const int32_t integral = qc_add_sat(s->integral_q20, amps_q20(s->gains.pi_ki, error));
+  const int32_t command_q20 = qc_add_sat(proportional, integral);
   const int32_t limited_q20 = q_clamp(command_q20, in->lowest_q20, in->highest_q20);
   // Hold the integrator while the limit is reached and the error would drive it further.
   if (limited_q20 == command_q20 || (command_q20 > limited_q20) != (error > 0)) s->integral_q20 = integral;

@@ -1,5 +1,6 @@
 #include "estimators/deviation_observer.h"
 
+#include "estimators/deviation_covariance.h"
 #include "estimators/deviation_information.h"
 
 #define ONE_Q20 1048576L
@@ -9,15 +10,10 @@
 #define ANGLE_VARIANCE (128L * ONE_Q20)
 #define SPEED_VARIANCE (64L * ONE_Q20)
 #define LOAD_VARIANCE (64L * ONE_Q20)
-#define STANDING_VARIANCE (ONE_Q20 / 4)  // 1.2 rad/s
-#define VARIANCE_MAX (512L * ONE_Q20)
-#define OUTLIER 192L  // sigma in a window as long as the period: 48 in a quarter of it
-#define ONE_Q30 1073741823L
-#define BOOST_SHIFT 9u              // the boost fades within 51 ms
-#define BOOST_AGAIN_Q30 858993459L  // and may be repeated after 11 ms
-#define BOOST_OVER_Q30 53687091L    // at speed after 150 ms: what is suspected for ever is the model, not the load
-#define SCORE_BIAS_MIN 40           // a bias of 0.4 units of angle, a third of a degree; Q24 to Q20
-#define STEP_AGE_Q30 268435456L     // 16 periods
+#define STANDING_VARIANCE (ONE_Q20 / 4)   // 1.2 rad/s
+#define OUTLIER 192L                      // sigma in a window as long as the period: 48 in a quarter of it
+#define SCORE_BIAS_MIN 40                 // a bias of 0.4 units of angle, a third of a degree; Q24 to Q20
+#define STEP_AGE_Q30 268435456L           // 16 periods
 #define STEP_AGE_UNMAPPED_Q30 536870912L  // 32 periods
 #define LAG_MAX_Q20 16777216L             // 16 units of time: 102 ms
 #define KNOWN_VARIANCE (32L * ONE_Q20)    // 5 degrees
@@ -30,15 +26,11 @@
 #define PERIODS_MAX 12L       // the covariance is renewed at the latest
 #define LEFT_PERIODS_MAX 15L  // nobody takes what is left: it begins anew
 
-typedef struct {
-  int32_t a, s;
-} gain_t;
-
 // N m in 10 ms -> variance per period: acceleration in own units is accel (bpp per N m) / 2607.6; a random walk reaches
 // its 10 ms value in 100 periods.
 static int32_t load_variance_q20(const machine_model_t* m, int32_t load_rate_q20) {
   const int32_t units_q12 = q_mul_sat(q_mul_sat(m->accel_q12, load_rate_q20, 20), 6587625L, 34);
-  return q_clamp(q_mul_sat(units_q12, units_q12, 4) / 100, 1, VARIANCE_MAX / 8);
+  return q_clamp(q_mul_sat(units_q12, units_q12, 4) / 100, 1, DEVIATION_VARIANCE_MAX / 8);
 }
 
 void deviation_observer_design(deviation_observer_config_t* c, const machine_model_t* m,
@@ -49,8 +41,8 @@ void deviation_observer_design(deviation_observer_config_t* c, const machine_mod
   c->limit_q19 = noise_q20 * (OUTLIER / 2);
   c->load_noise_q20 = load_variance_q20(m, t->load_rate_q20);
   c->load_noise_quiet_q20 = q_min(load_variance_q20(m, t->load_rate_quiet_q20), c->load_noise_q20);
-  c->load_step_q20 = q_min(load_variance_q20(m, t->load_step_q20), VARIANCE_MAX / 200) * 100;
-  c->moving_step_q20 = t->steps_at_speed ? 4 * q_min(c->load_step_q20, VARIANCE_MAX / 8) : 0;
+  c->load_step_q20 = q_min(load_variance_q20(m, t->load_step_q20), DEVIATION_VARIANCE_MAX / 200) * 100;
+  c->moving_step_q20 = t->steps_at_speed ? 4 * q_min(c->load_step_q20, DEVIATION_VARIANCE_MAX / 8) : 0;
   // Where the map is missing the angle seen turns with the current that answers the load, and the step is noticed late.
   c->step_age_q30 = t->steps_at_speed ? STEP_AGE_Q30 : STEP_AGE_UNMAPPED_Q30;
   c->crawl_bpp = q_clamp(t->crawl_bpp, 1, INT32_MAX / 4);
@@ -76,12 +68,6 @@ void deviation_observer_stands(deviation_observer_t* s) {
   s->p_sl = 0;
 }
 
-// 1 at a crawl, 0 from three times that speed.
-static int32_t crawl_share_q30(const deviation_observer_t* s, const deviation_observer_config_t* c) {
-  const int32_t above = q_abs_sat(s->speed_bpp) - c->crawl_bpp;
-  return ONE_Q30 - q_min(q_over(q_max(above, 0), c->per_crawl, 30), ONE_Q30);
-}
-
 // The mean of white scores over 32 periods has 1/63 of their power: five standard deviations are 0.63 of its root, and
 // noise has them once in five minutes. A longer mean would see smaller loads, and 5 N m a millisecond later. The power
 // is measured, not the information's word for it: it holds whatever noise the observer was configured with.
@@ -97,40 +83,6 @@ static bool scores_suggest_step(const deviation_observer_t* s, const information
          q_abs_sat(s->mean_score_q20) > n->aa / SCORE_BIAS_MIN;
 }
 
-// A step is noticed when it has already turned the shaft: a load that changed some time ago has left speed and angle
-// behind as well, all of them in proportion, and the covariance says by how much.
-static void admit_load_step(deviation_observer_t* s, const deviation_observer_config_t* c, int32_t variance_q20) {
-  const int32_t sl_q20 = q_mul(variance_q20, c->step_age_q30, 30);
-  const int32_t ss_q20 = q_mul(sl_q20, c->step_age_q30, 30);
-  const int32_t as_q20 = q_mul(ss_q20, c->step_age_q30, 31);
-  s->p_ll += variance_q20;
-  s->p_sl += sl_q20;
-  s->p_ss += ss_q20;
-  s->p_al += ss_q20 / 2;
-  s->p_as += as_q20;
-  s->p_aa += q_mul(as_q20, c->step_age_q30, 31);
-}
-
-// Cogging that is not known yet is a load that changes with the angle. An eighth of the variance is a bandwidth lower
-// by the root of two, since that goes with the load's rate to the third.
-static int32_t quiet_noise_q20(const deviation_observer_t* s, const deviation_observer_config_t* c) {
-  return c->load_noise_quiet_q20 - q_shr(q_mul_floor(c->load_noise_quiet_q20, s->cogging.known_q30, 30), 3) * 7;
-}
-
-static void admit_load_change(deviation_observer_t* s, const deviation_observer_config_t* c, bool suspected) {
-  const int32_t periods = s->gathered.periods;
-  const int32_t crawl_q30 = crawl_share_q30(s, c);
-  s->noise_boost_q30 = q_max(s->noise_boost_q30 - periods * q_shr_round(s->noise_boost_q30, BOOST_SHIFT), 0);
-  const int32_t step_q20 = c->moving_step_q20 + q_mul_floor(c->load_step_q20 - c->moving_step_q20, crawl_q30, 30);
-  const int32_t again_q30 = (crawl_q30 > 0) ? BOOST_AGAIN_Q30 : BOOST_OVER_Q30;
-  if (suspected && step_q20 > 0 && s->noise_boost_q30 < again_q30) {
-    s->noise_boost_q30 = ONE_Q30;
-    admit_load_step(s, c, step_q20);
-  }
-  const int32_t quiet_q30 = crawl_q30 - q_mul_floor(crawl_q30, s->noise_boost_q30, 30);
-  s->p_ll += periods * (c->load_noise_q20 - q_mul_floor(c->load_noise_q20 - quiet_noise_q20(s, c), quiet_q30, 30));
-}
-
 static void predict(deviation_observer_t* s, const deviation_observer_config_t* c, int32_t torque_accel_q8) {
   const int32_t load_q8 =
       q_add_sat(s->load_accel_q8, cogging_load(&s->cogging, &c->cogging, s->angle_bam, s->speed_bpp));
@@ -139,79 +91,6 @@ static void predict(deviation_observer_t* s, const deviation_observer_config_t* 
   s->angle_bam += (uint32_t)(s->speed_bpp + q_shr(change, 1));
   s->speed_bpp += change;
   s->speed_remainder_q8 = (int32_t)((uint32_t)change_q8 & 255u);
-}
-
-// The covariance over the periods since it was last renewed; a period is 1/64 of the unit of time.
-static void predict_covariance(deviation_observer_t* s) {
-  const int32_t time_q32 = s->gathered.periods * 67108864L;
-  const int32_t drawn = q_mul_hi(s->p_ss + s->p_al, time_q32);
-  s->p_aa += q_mul_hi(2 * s->p_as + drawn, time_q32);
-  s->p_as += drawn;
-  s->p_al += q_mul_hi(s->p_sl, time_q32);
-  s->p_ss += q_mul_hi(2 * s->p_sl + q_mul_hi(s->p_ll, time_q32), time_q32);
-  s->p_sl += q_mul_hi(s->p_ll, time_q32);
-}
-
-typedef struct {
-  int32_t aa_q21, as_q21, ss_q21;
-} known_t;
-
-// (x_a I_aa + x_s I_as, x_a I_as + x_s I_ss), Q16. Below 2^14: the variances are limited to 512 and, with them,
-// the covariances; the information of a period to 8, and that of the periods before makes up half a variance at most
-// (gain_is_old), or what 512 units of speed or load make of one in 12 periods.
-static gain_t times_information(const known_t* n, int32_t x_a_q20, int32_t x_s_q20) {
-  const gain_t g = {q_mul_add_floor(n->aa_q21, x_a_q20, n->as_q21, x_s_q20, 25),
-                    q_mul_add_floor(n->as_q21, x_a_q20, n->ss_q21, x_s_q20, 25)};
-  return g;
-}
-
-// Row of P (1 + I P)^-1, Q20; inverse: the four elements of (1 + I P)^-1, Q24, those across with the other sign.
-static gain_t gain_row(const int32_t inverse[4], int32_t p_a, int32_t p_s) {
-  const gain_t k = {q_mul_sub(p_a, inverse[0], p_s, inverse[2], 24), q_mul_sub(p_s, inverse[3], p_a, inverse[1], 24)};
-  return k;
-}
-
-static int32_t positive(int32_t variance) { return q_max(variance, 16); }
-
-// Takes a variance back to its limit, and its two covariances with it: else a correlation would exceed one while a
-// state is not observed, and the covariances would grow until they overflow.
-static void limit(int32_t* variance, int32_t* covariance1, int32_t* covariance2) {
-  if (*variance <= VARIANCE_MAX) return;
-  // 1 - excess / (2 limit), at most sqrt(limit / variance), as Q30: the limit is 2^29.
-  const int32_t keep_q30 = 1073741824L - q_min(*variance - VARIANCE_MAX, VARIANCE_MAX);
-  *covariance1 = q_mul(*covariance1, keep_q30, 30);
-  *covariance2 = q_mul(*covariance2, keep_q30, 30);
-  *variance = VARIANCE_MAX;
-}
-
-static void renew(deviation_observer_t* s) {
-  deviation_gathered_t* const n = &s->gathered;
-  const known_t known = {n->aa_q21, q_sat64(q_shr64(n->as_q24, 3)), n->ss_q21};
-  const gain_t ga = times_information(&known, s->p_aa, s->p_as);
-  const gain_t gs = times_information(&known, s->p_as, s->p_ss);
-  const gain_t gl = times_information(&known, s->p_al, s->p_sl);
-  // 1 + I P = [1 + ga.a, gs.a; ga.s, 1 + gs.s], Q16.
-  const int32_t m_aa = q_add_sat(ga.a, 65536L);
-  const int32_t m_ss = q_add_sat(gs.s, 65536L);
-  const int32_t det_q12 = q_max(q_mul_sub_sat(m_aa, m_ss, gs.a, ga.s, 20), 4096);
-  const int32_t per_det_q30 = q_over(4096, q_invert(det_q12), 30);
-  const int32_t inverse[4] = {q_mul_sat(m_ss, per_det_q30, 22), q_mul_sat(gs.a, per_det_q30, 22),
-                              q_mul_sat(ga.s, per_det_q30, 22), q_mul_sat(m_aa, per_det_q30, 22)};
-  const gain_t ka = gain_row(inverse, s->p_aa, s->p_as);
-  const int32_t p_ss = q_mul_sub(s->p_ss, inverse[3], s->p_as, inverse[1], 24);
-  const gain_t kl = gain_row(inverse, s->p_al, s->p_sl);
-  // The rows are the new covariance itself; only the load's variance, which nothing measures, is left.
-  s->p_aa = positive(ka.a);
-  s->p_as = q_limit(ka.s, VARIANCE_MAX);
-  s->p_ss = positive(p_ss);
-  s->p_al = q_limit(kl.a, VARIANCE_MAX);
-  s->p_sl = q_limit(kl.s, VARIANCE_MAX);
-  s->p_ll = positive(q_sub_sat(s->p_ll, q_mul_add(s->p_al, gl.a, s->p_sl, gl.s, 16)));
-  limit(&s->p_aa, &s->p_as, &s->p_al);
-  limit(&s->p_ss, &s->p_as, &s->p_sl);
-  limit(&s->p_ll, &s->p_al, &s->p_sl);
-  static const deviation_gathered_t none = {0, 0, 0, 0};
-  *n = none;
 }
 
 static int32_t scored(int32_t k_a, int32_t k_s, const information_t* n) {
@@ -251,14 +130,15 @@ bool deviation_observer_update_is_urgent(const deviation_observer_t* s) {
 }
 
 bool deviation_observer_is_due(const deviation_observer_t* s) {
-  return s->load_is_new || s->gathered.periods >= PERIODS_DUE || deviation_observer_update_is_urgent(s);
+  return s->load_is_new || s->gathered.periods >= PERIODS_DUE;
 }
 
 // A load that steps is not waited with for long, nor is what it does to the covariance in the 11 ms behind it.
 static void note_load(deviation_observer_t* s, const deviation_observer_config_t* c, bool suspected) {
   const bool looks_out = c->moving_step_q20 > 0 || q_abs_sat(s->speed_bpp) <= c->crawl_bpp;
-  s->load_step_suspected = s->load_step_suspected || (suspected && looks_out && s->noise_boost_q30 < BOOST_OVER_Q30);
-  s->load_is_new = s->load_step_suspected || s->noise_boost_q30 > BOOST_AGAIN_Q30;
+  s->load_step_suspected =
+      s->load_step_suspected || (suspected && looks_out && s->noise_boost_q30 < DEVIATION_BOOST_OVER_Q30);
+  s->load_is_new = s->load_step_suspected || s->noise_boost_q30 > DEVIATION_BOOST_AGAIN_Q30;
 }
 
 static const deviation_residual_t no_residual = {0, 0, 0, 0};
@@ -344,9 +224,7 @@ estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviat
   const bool suspected = scores_suggest_step(s, &n);
   note_load(s, c, suspected);
   if (in->renew || gain_is_old(s)) {
-    predict_covariance(s);
-    admit_load_change(s, c, suspected || s->load_step_suspected);
-    renew(s);
+    deviation_covariance_renew(s, c, suspected || s->load_step_suspected);
     s->load_step_suspected = false;
   }
   correct(s, &n);

@@ -82,13 +82,28 @@ static void backspace(editor_t* e, octet_writer_t* echo) {
   }
 }
 
+static uint16_t packed_at(const editor_packed_t* p, uint16_t k) {
+  return (p->pairs[k / 2u] >> (8u * (k % 2u))) & 0xFFu;
+}
+
+static void unpack(editor_line_t* line, const editor_packed_t* p) {
+  line->count = p->count;
+  for (uint16_t k = 0; k < p->count; k++) line->text[k] = packed_at(p, k);
+}
+
+// What is beyond the end of the line makes no difference.
+static void pack(editor_packed_t* p, const editor_line_t* line) {
+  p->count = line->count;
+  for (uint16_t k = 0; k < line->count; k += 2u) p->pairs[k / 2u] = (uint16_t)(line->text[k] | line->text[k + 1u] << 8);
+}
+
 static void recall(editor_t* e, uint16_t which) {
   if (which > EDITOR_HISTORY || (which > 0u && e->history[which - 1u].count == 0u)) return;
   e->recalled = which;
   if (which == 0u) {
     e->line.count = 0;
   } else {
-    e->line = e->history[which - 1u];
+    unpack(&e->line, &e->history[which - 1u]);
   }
   e->cursor = e->line.count;
 }
@@ -196,10 +211,10 @@ editor_event_t editor_octet(editor_t* e, uint16_t octet, octet_writer_t* echo) {
   return EDITOR_NOTHING;
 }
 
-static bool is_same(const editor_line_t* a, const editor_line_t* b) {
-  if (a->count != b->count) return false;
-  for (uint16_t k = 0; k < a->count; k++) {
-    if (a->text[k] != b->text[k]) return false;
+static bool is_same(const editor_line_t* line, const editor_packed_t* p) {
+  if (line->count != p->count) return false;
+  for (uint16_t k = 0; k < line->count; k++) {
+    if (line->text[k] != packed_at(p, k)) return false;
   }
   return true;
 }
@@ -208,7 +223,7 @@ void editor_next(editor_t* e) {
   const bool worth_it = e->line.count > 0u && !e->too_long && !is_same(&e->line, &e->history[0]);
   if (worth_it) {
     for (uint16_t k = EDITOR_HISTORY - 1u; k > 0u; k--) e->history[k] = e->history[k - 1u];
-    e->history[0] = e->line;
+    pack(&e->history[0], &e->line);
   }
   begin_line(e);
 }

@@ -65,7 +65,18 @@ static bool has_room(const drive_t* d) {
   const schedule_t* const s = &d->schedule;
   const bool is_long = s->task == TASK_SPEED || s->task == TASK_FIELD;
   if (is_long && is_beside_flux(d)) return false;
-  return !s->update_urgent || s->renews || !(is_long || s->judges || is_young(d));
+  const bool of_model = s->slot == SLOT_OPERATING_POINT || s->slot == SLOT_LOOK;
+  return !s->update_urgent || s->renews || !(is_long || of_model || s->judges || is_young(d));
+}
+
+// A shaft that is caught wants its field weakened before it counts as one that turns.
+static bool is_beside_field(const drive_t* d) {
+  return d->flags.caught && !d->schedule.turning && d->schedule.task == TASK_FIELD;
+}
+
+// The vector that turns the shaft and the observer that looks on take turns.
+static bool is_beside_vector(const drive_t* d) {
+  return d->flags.open_loop && drive_source_has(d, SOURCE_SINGLE) && (d->schedule.period & 1u) != 0u;
 }
 
 static void begin(schedule_t* s) {
@@ -94,5 +105,5 @@ void schedule_next(drive_t* d) {
     s->renews = s->task == TASK_RENEW;
     s->judges = is_judgement(s->task) && !s->unsure && !is_young(d) && d->state != DRIVE_START;
   }
-  s->skips = s->exclusive || (observes && !has_room(d));
+  s->skips = s->exclusive || (observes && !has_room(d)) || is_beside_field(d) || is_beside_vector(d);
 }

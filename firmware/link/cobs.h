@@ -15,8 +15,8 @@ extern "C" {
 #define COBS_SIZE(octets) ((octets) + (octets) / 254u + 1u)
 #define COBS_MALFORMED 0xFFFFu
 
-/// Encodes `count` octets into `to`, which has room for COBS_SIZE(count) and does not overlap. Returns how many there
-/// are; none of them is zero.
+/// Encodes `count` octets into `to`, which has room for COBS_SIZE(count) and does not overlap, but that up to 254
+/// octets may lie at to + 1, where most of them stay. Returns how many there are; none of them is zero.
 uint16_t cobs_encode(const uint16_t* from, uint16_t count, uint16_t* to);
 
 /// Decodes in place. Returns how many octets are left, always fewer than `count`; COBS_MALFORMED for what is no

@@ -17,8 +17,8 @@
 
 static splitter_t splitter;
 static uint16_t text_at, text_end;  // text in the splitter's block that nobody has had yet
-static uint16_t record[RECORD_MAX];
 static uint16_t wire[WIRE_MAX];
+static uint16_t* const record = &wire[RECORD_IN_WIRE];
 
 void link_reset(void) {
   comm_watchdog_reset();
@@ -83,7 +83,7 @@ static bool take_octet(void) {
 
 void link_service(void) {
   comm_watchdog_service();
-  requests_service();
+  requests_service(record);
   send_event();
   uint16_t left = OCTETS_A_ROUND;
   while (left > 0u && take_octet()) left--;

@@ -22,6 +22,7 @@ extern "C" {
 #define RECORD_MAX (2u + 1u + RECORD_BODY_MAX + 2u)  // with type, tag, status and CRC
 #define RECORD_MIN 4u                                // type, tag, CRC
 #define RECORD_ENCODED_MAX 256u                      // between the two zeros
+#define RECORD_IN_WIRE 2u                            // where a record may lie in the memory of its encoding
 #define RECORD_ANSWER 0x80u
 
 /// Appends the CRC to `count` octets, for which there is room. Returns how many there are then.
@@ -31,7 +32,8 @@ uint16_t record_seal(uint16_t* octets, uint16_t count);
 uint16_t record_open(const uint16_t* octets, uint16_t count);
 
 /// Seals and encodes `count` octets of `record` (at most RECORD_MAX - 2) with both zeros around it into `wire`, which
-/// has room for RECORD_ENCODED_MAX + 2. Returns how many octets go on the wire.
+/// has room for RECORD_ENCODED_MAX + 2; `record` is elsewhere or &wire[RECORD_IN_WIRE]. Returns how many octets go on
+/// the wire.
 uint16_t record_to_wire(uint16_t* record, uint16_t count, uint16_t* wire);
 
 #if defined(__cplusplus)

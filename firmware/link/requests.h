@@ -57,8 +57,8 @@ enum {
 /// Power-on state.
 void requests_reset(void);
 
-/// Background level: works on the tables' check sum for a short time.
-void requests_service(void);
+/// Background level: works on the tables' check sum for a short time, with room for RECORD_BODY_MAX octets.
+void requests_service(uint16_t* scratch);
 
 /// Answers `count` octets of a request that came in at this port with a right CRC. Returns the number of octets of the
 /// answer, for which there is room of RECORD_MAX; 0 for what is no request.

@@ -73,11 +73,10 @@ static void next_words(octet_writer_t* piece) {
   sum.complete = sum.kind == CATALOGUES;
 }
 
-void requests_service(void) {
+void requests_service(uint16_t* scratch) {
   if (sum.scales != unit_scales()) requests_reset();
   if (sum.complete) return;
-  static uint16_t block[RECORD_BODY_MAX];
-  octet_writer_t piece = octet_writer(block, RECORD_BODY_MAX);
+  octet_writer_t piece = octet_writer(scratch, RECORD_BODY_MAX);
   if (sum.in_words) {
     next_words(&piece);
   } else if (sum.at < parameter_count()) {

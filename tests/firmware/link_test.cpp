@@ -59,6 +59,14 @@ Octets encoded(const Octets& data) {
   EXPECT_LE(n, COBS_SIZE(data.size()));
   EXPECT_EQ(to[COBS_SIZE(data.size())], 0xBEEF) << "written behind the end";
   to.resize(n);
+  if (data.size() <= 254u) {
+    Octets in_place = data;
+    in_place.insert(in_place.begin(), 0xBEEF);
+    in_place.resize(COBS_SIZE(data.size()));
+    EXPECT_EQ(cobs_encode(&in_place[1], length(data), in_place.data()), n);
+    in_place.resize(n);
+    EXPECT_EQ(in_place, to) << "in place";
+  }
   return to;
 }
 

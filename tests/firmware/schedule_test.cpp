@@ -178,7 +178,8 @@ TEST_F(Schedule, AnObserverThatDoesNotKnowItsAngleLooksWhereThereIsRoom) {
     EXPECT_TRUE(s.unsure && s.update_urgent);
     EXPECT_FALSE(s.judges);
     EXPECT_FALSE(s.moves) << "it renews anyway";
-    EXPECT_EQ(s.skips, s.task == TASK_SPEED || s.task == TASK_FIELD);
+    const bool of_model = s.slot == SLOT_LOOK || s.slot == SLOT_OPERATING_POINT;
+    EXPECT_EQ(s.skips, s.task == TASK_SPEED || s.task == TASK_FIELD || of_model);
   }
   // Known, but with much to learn: the same, and the synchronism is judged.
   know(0.9);
@@ -186,7 +187,8 @@ TEST_F(Schedule, AnObserverThatDoesNotKnowItsAngleLooksWhereThereIsRoom) {
   for (const schedule_t& s : next(10)) {
     EXPECT_TRUE(s.update_urgent && !s.unsure);
     const bool long_task = s.task == TASK_SPEED || s.task == TASK_FIELD;
-    EXPECT_EQ(s.skips, long_task || s.judges);
+    const bool of_model = s.slot == SLOT_LOOK || s.slot == SLOT_OPERATING_POINT;
+    EXPECT_EQ(s.skips, long_task || of_model || s.judges);
     EXPECT_EQ(s.judges, s.task == TASK_JUDGE || s.task == TASK_JUDGE_FIRST);
   }
 }

@@ -27,7 +27,7 @@ void command_obey(const editor_line_t* line, bool expired) {
 bool command_makes_safe(const editor_line_t* line) { return line->count > 0u && any_bool(); }
 
 void requests_reset(void) {}
-void requests_service(void) {}
+void requests_service(uint16_t* scratch) { (void)scratch; }
 
 uint16_t request_answer(comm_watchdog_t port, const uint16_t* request, uint16_t count, uint16_t* answer) {
   (void)port;

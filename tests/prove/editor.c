@@ -29,7 +29,9 @@ static void any_state(uint16_t count) {
 void prove_editor(void) {
   editor_reset(&e);
   any_text(&e.line);
-  for (uint16_t k = 0; k < EDITOR_HISTORY; k++) any_text(&e.history[k]);
+  for (uint16_t k = 0; k < EDITOR_HISTORY; k++) {
+    for (uint16_t j = 0; j < EDITOR_LINE / 2u; j++) e.history[k].pairs[j] = any_u16;
+  }
   //@ loop unroll 81;
   for (uint16_t count = 0; count <= EDITOR_LINE; count++) {
     octet_writer_t echo = octet_writer(block, 200);

@@ -97,7 +97,7 @@ static void one_type(uint16_t type) {
   while (any_bool()) {
     any_moment();
     hil_service();
-    requests_service();
+    requests_service(answer);
     ask(any_bool() ? COMM_WATCHDOG_SERIAL : COMM_WATCHDOG_BUS, type);
     (void)stream_event(COMM_WATCHDOG_SERIAL, answer);
     (void)stream_event(COMM_WATCHDOG_BUS, answer);

@@ -22,11 +22,11 @@ PAGE 0:
   ENTRY        : origin = 0x3F7FF6, length = 0x000002   /* where the boot ROM jumps to */
   PASSWORDS    : origin = 0x3F7FF8, length = 0x000008
   RAM_FIXED    : origin = 0x000010, length = 0x0003E8   /* M0; not at 0, which is no function's address */
-  RAM_FIXED_H0 : origin = 0x3FAA00, length = 0x000500   /* H0 behind RAM_DATA, by its high address */
-  RAM_CODE     : origin = 0x3FAF00, length = 0x0010F8   /* the rest of it */
+  RAM_FIXED_H0 : origin = 0x3FA6A8, length = 0x000500   /* H0 behind RAM_DATA, by its high address */
+  RAM_CODE     : origin = 0x3FABA8, length = 0x001450   /* the rest of it */
 PAGE 1:
   STACK        : origin = 0x000400, length = 0x000400   /* M1: SP reaches the low 64 K only */
-  RAM_DATA     : origin = 0x008000, length = 0x002A00   /* L0, L1, some of H0 by its low address: one piece */
+  RAM_DATA     : origin = 0x008000, length = 0x0026A8   /* L0, L1, some of H0 by its low address: one piece */
 }
 
 /* The CPU fetches ahead of what it runs: code keeps off the last eight words of a block of memory. Start-up zeroes
@@ -74,8 +74,7 @@ SECTIONS
                 libstillspin_firmware.a<modulation.*>(.text:_drive_modulate, .text:_modulate_into, .text:_write_frame)
                 libstillspin_firmware.a<mode.*>(.text:_is_energised)
                 libstillspin_firmware.a<hysteresis.*>(.text:_hysteresis_slice)
-                libstillspin_firmware.a<signals.*>(.text:_phase_current)
-                libstillspin_estimators.a<deviation_observer.*>(.text:_deviation_observer_update_is_urgent)
+                libstillspin_estimators.a<deviation_observer.*>(.text:_deviation_observer_step)
                 libstillspin_estimators.a<regression.*>(.text:_regression_evaluate)
                 libstillspin_estimators.a<deviation.*>(.text)
                 libstillspin_qmath.a<qsum.*>(.text)
@@ -107,6 +106,7 @@ SECTIONS
                 libstillspin_control.a<speed_controller.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<axis.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<blend.*>(.text, .econst, .switch)
+                libstillspin_estimators.a<deviation_covariance.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<emf_sign.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<followed.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<inertia_match.*>(.text, .econst, .switch)
