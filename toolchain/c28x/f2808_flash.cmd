@@ -63,8 +63,6 @@ SECTIONS
                 libstillspin_hal.a<irq.*>(.text:_control_isr, .text:_window_isr, .text:_hal_irq_control_begin,
                                           .text:_hal_irq_control_end, .text:_hal_irq_disable, .text:_hal_irq_restore,
                                           .text:retain)   /* where cl2000 has interrupt functions */
-                libstillspin_hal.a<safety.*>(.text:_hal_safety_toggle_enable)
-                libstillspin_hal.a<gpio.*>(.text:_gpio_toggle)
                 libstillspin_firmware.a<control_interrupt.*>(.text:_drive_control_step, .text:_drive_control_interrupt)
                 libstillspin_firmware.a<schedule.*>(.text:_schedule_next)
                 libstillspin_firmware.a<sampling.*>(.text:_drive_read_samples, .text:_drive_window_interrupt)
