@@ -5,17 +5,16 @@
 #define TURNS_Q32_PER_RAD 683565276L  // 2^32 / 2 pi
 #define ANGLE_80_DEG 954437177L
 #define SHIFT_MAX_BAM 536870912L  // 45 degrees
-#define STEP_PERIODS 2L           // of the damping
-#define MEAN_SHIFT 9u             // 100 ms
-#define FILTER_LEAST 2u
-#define FILTER_MOST 7u
+#define MEAN_SHIFT 10u            // 100 ms
+#define FILTER_LEAST 3u
+#define FILTER_MOST 8u
 
-// Lq I/(lambda w0) in steps of the damping, as the next power of two.
+// Lq I/(lambda w0) in periods, as the next power of two.
 static uint16_t filter_shift(const if_start_config_t* c, const machine_model_t* m) {
   const int32_t ratio_q12 = q_div(qc_mul_sat(m->lq_q30, c->current_q20, 22), m->flux_q28, 12);
   const int32_t periods = qc_mul_sat(ratio_q12, c->damping_periods, 12);
   uint16_t n = FILTER_LEAST;
-  while (n < FILTER_MOST && (STEP_PERIODS << n) < periods) n++;
+  while (n < FILTER_MOST && (1L << n) < periods) n++;
   return n;
 }
 
@@ -61,19 +60,12 @@ static void step_vector(if_start_t* s, const if_start_config_t* c) {
   s->vector_bam += (uint32_t)s->speed_bpp;
 }
 
-// Length of a vector, to 3 %: it scales the damping alone.
-static int32_t length_of(int32_t a, int32_t b) {
-  const int32_t longer = q_max(q_abs_sat(a), q_abs_sat(b));
-  const int32_t shorter = q_min(q_abs_sat(a), q_abs_sat(b));
-  return q_max(longer, longer / 8 * 7 + shorter / 2);
-}
-
 // The EMF along its own mean direction: to first order that is the rotor's speed alone, whatever the lag. Near
 // standstill the direction is that of no lag.
 static int32_t emf_along_q16(const if_start_t* s, const if_start_config_t* c, dq_t emf_q16) {
   const int32_t d = s->backward ? -s->mean_q16.d : s->mean_q16.d;
   const int32_t q = qc_add_sat(s->backward ? -s->mean_q16.q : s->mean_q16.q, c->least_q16);
-  return qc_over(q_mul_add_sat(d, emf_q16.d, q, emf_q16.q, 20), q_invert(length_of(d, q)), 20);
+  return q_div(q_mul_add_sat(d, emf_q16.d, q, emf_q16.q, 20), q_hypot(d, q), 20);
 }
 
 static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
@@ -85,18 +77,14 @@ static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
   s->mean_bpp = q_follow(s->mean_bpp, s->rotor_bpp, MEAN_SHIFT);
   const int32_t fast = qc_sub_sat(s->rotor_bpp, s->mean_bpp);
   const int32_t shift = q_clamp(q_sat64((int64_t)fast * c->damping_periods), -SHIFT_MAX_BAM, SHIFT_MAX_BAM);
-  s->behind_bam = (uint32_t)shift;
+  s->angle_bam = s->vector_bam - (uint32_t)shift;
 }
 
 if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16, uint32_t seen_bam,
                                 int32_t seen_bpp) {
   s->tick = q_min(s->tick + 1, c->align_periods);
   step_vector(s, c);
-  s->damps = !s->damps;
-  const dq_t mean_q16 = {voltage_q16.d / 2 + s->before_q16.d / 2, voltage_q16.q / 2 + s->before_q16.q / 2};
-  s->before_q16 = voltage_q16;
-  if (s->damps) damp(s, c, mean_q16);
-  s->angle_bam = s->vector_bam - s->behind_bam;
+  damp(s, c, voltage_q16);
   if (!if_start_is_up(s, c)) return IF_START_PENDING;
   const bool near = qc_abs_sat(angle_diff_bam(s->vector_bam, seen_bam)) < ANGLE_80_DEG &&
                     qc_abs_sat(qc_sub_sat(seen_bpp, s->speed_bpp)) < c->speed_bpp / 4;

@@ -13,8 +13,6 @@
 // gains with frequency up to the current control's and swings there. So w~ is filtered over Lq I/(lambda w0) at least;
 // where Lq I is more than half of lambda, that leaves little damping.
 //
-// The damping takes a step in every second period.
-//
 // The source takes over when for 300 ms it has been within 80 degrees of the vector and within a quarter of its speed.
 
 #ifndef STILLSPIN_CONTROL_IF_START_H
@@ -32,7 +30,7 @@ typedef struct {
   int32_t wait_periods;     // there, until the source agrees
   int32_t damping_periods;  // 1 / w0
   int32_t per_emf_q4;       // bpp per V of EMF
-  uint16_t filter_shift;    // of the rotor's speed: over 2^n steps of the damping
+  uint16_t filter_shift;    // of the rotor's speed: over 2^n periods
   int32_t resistance_q24;
   int32_t least_q16;  // mean EMF, V, below which its direction is not looked at
 } if_start_config_t;
@@ -47,16 +45,13 @@ typedef struct {
   int32_t tick;            // periods since the beginning, at most those at rest
   int32_t speed_bpp;       // of the vector
   uint32_t vector_bam;     // its angle without the damping
-  uint32_t behind_bam;     // what the damping turns it back by
   uint32_t angle_bam;      // of the frame to control in
   int32_t current_q20;     // i_d to ask for
-  dq_t before_q16;         // voltage of the last period, V: the pulses alternate
   dq_t mean_q16;           // EMF, V, in the frame
   int32_t rotor_bpp;       // speed of the rotor by the EMF, filtered
   int32_t mean_bpp;        // its mean
   int32_t agreed, waited;  // periods
   bool backward;
-  bool damps;  // the last step did
 } if_start_t;
 
 /// Derives damping and speed from the machine. False where the spring is slower than 1 s or faster than 10 periods.

@@ -77,7 +77,6 @@ typedef struct {
 typedef struct {
   spin_station_t station[SPIN_STATIONS];
   spin_ramp_t ramp[SPIN_RAMPS];
-  bool begun;
   uint16_t leg;
   int32_t tick;
 } spin_t;
@@ -86,7 +85,6 @@ typedef struct {
   commissioning_phase_t phase;
   commissioning_outcome_t outcome;
   int32_t tick;           // periods in this phase
-  uint16_t round;         // of the periods in which angle and sums have the windows in turn
   bool predicting;        // the angle runs ahead on the torque alone
   bool solve_motion;      // the background level owes acceleration and torque constant from the spin
   bool evaluate;          // the sums are complete and the gates are off

@@ -10,7 +10,6 @@
 #include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
-#include "firmware/start/phases.h"
 #include "hal/qmath/qcall.h"
 
 #define STIFFNESS_Q30 38655L   // (60 rad/s * 100 us)^2
@@ -32,7 +31,7 @@ void commissioning_hold(drive_t* d) {
   const int32_t command_q8 =
       qc_sub_sat(qc_mul_sat(error_bam, STIFFNESS_Q30, 22), qc_mul_sat(p->speed_bpp, DAMPING_Q30, 22));
   const int32_t torque_q20 = qc_mul_sat(qc_add_sat(command_q8, p->load_accel_q8), d->model.torque_per_accel_q24, 20);
-  const int32_t current = qc_over(torque_q20, d->control.per_torque_constant, 24);
+  const int32_t current = q_div(torque_q20, machine_torque_constant_q24(&d->model, d->control.reference_q20.d), 24);
   const int32_t limit = commissioning.uniform ? 0 : d->config.values.current_limit / 4;
   d->control.reference_q20.q = q_clamp(current, -limit, limit);
 }
@@ -49,7 +48,7 @@ bool commissioning_align(drive_t* d) {
   const int32_t left = angle_diff_bam(c->goal_bam, c->target_bam);
   c->target_bam += (uint32_t)q_clamp(left, -TURN_STEP_BAM, TURN_STEP_BAM);
   commissioning_hold(d);
-  if (c->tick < SETTLE_PERIODS || !start_has_exclusive_slot(d)) return false;
+  if (c->tick < SETTLE_PERIODS) return false;
   c->model = d->model;
   machine_model_move(&c->model, 0);
   return true;
@@ -58,8 +57,7 @@ bool commissioning_align(drive_t* d) {
 void commissioning_add_still(const drive_t* d) {
   deviation_t first;
   deviation_t second;
-  if (commissioning_takes_windows() && commissioning_pair(d, &first, &second))
-    tensor_add(&commissioning.unsaturated, &first, &second);
+  if (commissioning_pair(d, &first, &second)) tensor_add(&commissioning.unsaturated, &first, &second);
 }
 
 // AVV alone, or no measurement at all and the angle by the torque. A machine without an axis is not measured at rest:
@@ -70,7 +68,6 @@ void commissioning_estimate(drive_t* d, estimator_input_t* in) {
     d->position.selected = still;
     return;
   }
-  if (d->flags.frozen && commissioning_takes_windows()) in->window_count = 0;
   if (!commissioning.predicting) {
     d->position.selected = position_sources[POSITION_AVV]->step(d, in);
     return;

@@ -17,8 +17,6 @@ void commissioning_hold(drive_t* d);                      // keeps the shaft at 
 void commissioning_set_d(drive_t* d, int32_t level_q20);  // i_d reference, with a limited slope
 /// A pair of windows at rest and without current, for the inductances there.
 void commissioning_add_still(const drive_t* d);
-/// Whether the windows of this period are for the sums, and not for the angle.
-bool commissioning_takes_windows(void);
 /// Angle and speed while the shaft is held (commissioning/hold.c).
 void commissioning_estimate(drive_t* d, estimator_input_t* in);
 /// The period's two opposite windows against the model, in the frame that they were turned into; false when there are

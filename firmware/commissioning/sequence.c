@@ -11,7 +11,6 @@
 
 #define LONGER_TICKS 500
 #define SAMPLING_MIN_TICKS 450  // two bursts and the shortest useful time between them
-#define ROUND_PERIODS 6u        // in which the excitation comes round
 
 commissioning_t commissioning;
 
@@ -50,7 +49,6 @@ static void commissioning_begin(drive_t* d, drive_state_t behind) {
   c->outcome = COMMISSIONING_RUNNING;
   c->phase = COMMISSIONING_IDLE;
   c->tick = 0;
-  c->round = 0;
   c->evaluate = false;
   c->solve_motion = false;
   c->predicting = false;
@@ -92,12 +90,8 @@ static void commissioning_step(drive_t* d) {
   }
   const bool done = phases[c->phase].step(d);
   c->tick = q_add_sat(c->tick, 1);
-  c->round = (c->round + 1u < 2u * ROUND_PERIODS) ? (uint16_t)(c->round + 1u) : 0u;
   if (done) next_phase(d);
 }
-
-// Looking at the windows for angle and sums in one period takes too long.
-bool commissioning_takes_windows(void) { return commissioning.round >= ROUND_PERIODS; }
 
 static bool has_failed(const drive_t* d) {
   return commissioning.outcome == COMMISSIONING_RUNNING && d->state == DRIVE_FAULT;

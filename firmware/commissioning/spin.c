@@ -51,7 +51,6 @@ static void start_by_vector(drive_t* d) {
 
 static void begin(drive_t* d) {
   if (!d->flags.spins) drive_bumpless_transfer(d, d->position.selected.angle_bam, 0);
-  commissioning.spin.begun = true;
   d->flags.spins = true;
   d->flags.frozen = false;
   d->control.target_bpp = d->control.ramp.value;
@@ -87,16 +86,13 @@ static bool hand_back(drive_t* d) {
 
 bool commissioning_spin(drive_t* d) {
   spin_t* const s = &commissioning.spin;
-  // Each thing that is long has a period for itself.
+  // Two things that are long, in a period each.
   if (commissioning.tick == 0) {
     clear(s, sizeof *s);
     if (commissioning.uniform) start_by_vector(d);
     return false;
   }
-  if (!s->begun) {
-    if (start_has_exclusive_slot(d)) begin(d);
-    return false;
-  }
+  if (commissioning.tick == 1) begin(d);
   if (!d->flags.spins) return hand_back(d);
   const bool arrived = approach(d);
   if (s->leg >= (uint16_t)LEG_STOP) {

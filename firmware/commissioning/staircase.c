@@ -16,6 +16,7 @@
 // without an overload: with the machine cool, a quarter of what the overload's time constant bears. Resistance of
 // winding and of devices cannot be told apart this way: the devices' is kept as it was given.
 
+#include "firmware/base/clear.h"
 #include "firmware/board/functions.h"
 #include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
@@ -25,7 +26,7 @@
 
 #define SIDE (STAIRCASE_LEVELS / 2u)
 #define SETTLE_PERIODS 600
-#define LEVEL_PERIODS 8400  // a multiple of the twelve periods in which excitation and windows come round
+#define LEVEL_PERIODS 8400  // a multiple of the six periods in which the excitation comes round
 
 // Peak to peak on the d-axis: two thirds of the link for the length of a pulse.
 static int32_t ripple_q20(const drive_t* d) {
@@ -80,7 +81,7 @@ static int32_t sag_q12(const drive_t* d, const deviation_t w[2]) {
 }
 
 static void add_windows(const drive_t* d, staircase_level_t* l, rotation_t r) {
-  deviation_t w[2];
+  deviation_t w[2] = {{{0, 0}, {0, 0}, {0, 0}}, {{0, 0}, {0, 0}, {0, 0}}};
   if (!commissioning_pair(d, &w[0], &w[1])) return;
   for (uint16_t k = 0; k < 2u; k++) {
     q_gather(&l->window_current, w[k].current_q20.d);
@@ -89,18 +90,6 @@ static void add_windows(const drive_t* d, staircase_level_t* l, rotation_t r) {
     l->windows = qc_add_sat(l->windows, 1);
   }
   q_gather(&l->sag, sag_q12(d, w));
-}
-
-static void empty(staircase_level_t* l) {
-  l->current = 0;
-  l->factor = 0;
-  l->command = 0;
-  l->window_current = 0;
-  l->window_factor = 0;
-  l->residual = 0;
-  l->sag = 0;
-  l->periods = 0;
-  l->windows = 0;
 }
 
 bool commissioning_climb(drive_t* d) {
@@ -114,7 +103,6 @@ bool commissioning_climb(drive_t* d) {
     s->one_volt.drop_q16 = 65536L;
     dead_time_design(&s->one_volt);
     tensor_reset(&c->unsaturated);
-    return false;
   }
   commissioning_hold(d);
   if (s->index >= STAIRCASE_LEVELS) {
@@ -130,13 +118,13 @@ bool commissioning_climb(drive_t* d) {
   }
   commissioning_set_d(d, level_q20(d, s->index));
   staircase_level_t* const l = &s->level[s->index];
-  if (s->tick == 0) empty(l);
-  if (s->tick >= SETTLE_PERIODS) {
+  if (s->tick == 0) clear(l, sizeof *l);
+  s->tick = qc_add_sat(s->tick, 1);
+  if (s->tick > SETTLE_PERIODS) {
     const rotation_t r = frame_rotation(d->position.selected.angle_bam);
     add_period(d, l, r);
-    if (commissioning_takes_windows()) add_windows(d, l, r);
+    add_windows(d, l, r);
   }
-  s->tick = qc_add_sat(s->tick, 1);
   if (s->tick < SETTLE_PERIODS + LEVEL_PERIODS) return false;
   l->link_q16 = d->samples.link_q16;
   s->index++;

@@ -169,8 +169,8 @@ TEST(IfStart, WhatTheDesignMakesOfTheMachine) {
   // (w0 T)^2 = 1.5 p^2 lambda I / J T^2
   const double w0 = std::sqrt(1.5 * 16.0 * m.flux * 8.0 / m.inertia);
   EXPECT_NEAR(c.damping_periods, 1.0 / (w0 * kPeriod), 1.0);
-  // Lq I/(lambda w0) is 1.65 ms, and 16 steps of two periods the next power of two.
-  EXPECT_EQ(c.filter_shift, 4);
+  // Lq I/(lambda w0) is 1.65 ms, and 32 periods the next power of two.
+  EXPECT_EQ(c.filter_shift, 5);
   p.step_bpp = 0;
   EXPECT_EQ(designed(m, p).step_bpp, 1);
   p.step_bpp = 7;
@@ -178,7 +178,7 @@ TEST(IfStart, WhatTheDesignMakesOfTheMachine) {
   EXPECT_NE(IF_START_TAKEN_OVER, IF_START_FAILED);
 }
 
-// Lq I/(lambda w0), 2 to 7 as the next power of two of steps, which take two periods.
+// Lq I/(lambda w0), 3 to 8 as the next power of two.
 TEST(IfStart, TheFilterIsAsLongAsTheVectorTakesToTurn) {
   std::array<bool, 10> seen{};
   for (const double stretch : {1.0, 4.0, 16.0}) {
@@ -192,7 +192,7 @@ TEST(IfStart, TheFilterIsAsLongAsTheVectorTakesToTurn) {
       const double power = std::log2(periods);
       if (std::fabs(periods - std::exp2(std::round(power))) < 0.6) continue;  // whole periods are compared
       const int shift = std::clamp(static_cast<int>(std::ceil(power)), 3, 8);
-      EXPECT_EQ(c.filter_shift, shift - 1) << stretch << " " << current;
+      EXPECT_EQ(c.filter_shift, shift) << stretch << " " << current;
       seen[static_cast<std::size_t>(std::clamp(static_cast<int>(std::ceil(power)), 2, 9))] = true;
     }
   }
@@ -219,7 +219,7 @@ TEST(IfStart, ItRisesAQuarterTurnBehind) {
   }
 }
 
-// What it sees follows with a 16th of the difference in every second period, the mean with 1/512.
+// What it sees follows with a 32nd of the difference in each period, the mean with 1/1024.
 TEST(IfStart, ItsFiltersHaveTheirTimes) {
   const if_start_config_t c = designed(motor_b(), usual());
   if_start_t s;
@@ -229,11 +229,8 @@ TEST(IfStart, ItsFiltersHaveTheirTimes) {
   for (int n = 1; n <= 3000; ++n) {
     const double drop = motor_b().rs * 8.0 * std::min(n / 500.0, 1.0);
     (void)if_start_step(&s, &c, raw_dq({drop, emf}, 16), 0, 0);
-    ASSERT_EQ(s.damps, n % 2 == 1);
-    if (s.damps) {  // with the mean voltage of two periods
-      rotor += ((n == 1 ? 0.5 : 1.0) * seen - rotor) / std::ldexp(1.0, c.filter_shift);
-      mean += (rotor - mean) / 512.0;
-    }
+    rotor += (seen - rotor) / std::ldexp(1.0, c.filter_shift);
+    mean += (rotor - mean) / 1024.0;
     ASSERT_NEAR(s.rotor_bpp, rotor, 2e-4 * seen) << n;
     ASSERT_NEAR(s.mean_bpp, mean, 2e-4 * seen) << n;
     const double shift = std::min((rotor - mean) * c.damping_periods / std::ldexp(1.0, 32), 0.125);
@@ -302,11 +299,7 @@ TEST(IfStart, TheEmfAlongItsDirectionIsTheRotorsSpeed) {
           (void)if_start_step(&s, &c, raw_dq({emf.x + drop, emf.y}, 16), 0, 0);
         }
         const Vector along = {way * emf.x, way * emf.y + real(c.least_q16, 16)};
-        // its length within 3 %, without a root
-        const double longer = std::max(std::fabs(along.x), std::fabs(along.y));
-        const double length = std::max(longer, 0.875 * longer + 0.5 * std::min(std::fabs(along.x), std::fabs(along.y)));
-        EXPECT_NEAR(length / along.length(), 1.0, 0.031);
-        const double seen = (along.x * emf.x + along.y * emf.y) / length / m.flux;
+        const double seen = (along.x * emf.x + along.y * emf.y) / along.length() / m.flux;
         // the means end up to 2^10 LSB before what they follow: 0.016 V, of the smallest EMF of 1.7 V
         EXPECT_NEAR(rad_per_s(s.rotor_bpp), seen, 0.01 * speed) << lag << " " << speed;
         EXPECT_NEAR(rad_per_s(s.mean_bpp), seen, 0.01 * speed) << lag << " " << speed;

@@ -34,10 +34,8 @@ class Phases : public Drive {
 
   /// One period of a phase, as the sequence calls it.
   static bool step(bool (*phase)(drive_t*)) {
-    inside::schedule().exclusive = true;  // for whoever asks for it
     const bool done = phase(&drive);
     commissioning.tick++;
-    commissioning.round = static_cast<std::uint16_t>((commissioning.round + 1) % 12);
     return done;
   }
   /// The period's windows, under opposite vectors along alpha; what they leave over is along d, A per period.

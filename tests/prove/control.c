@@ -80,14 +80,11 @@ static void weaken_field(void) {
 static void any_vector(if_start_t* s, const if_start_config_t* c) {
   s->tick = any_from(0, c->align_periods);
   s->speed_bpp = any_from(-TURN_MAX_BPP, TURN_MAX_BPP);
-  s->before_q16 = any_dq(VOLTAGE_MAX_Q16);
   s->mean_q16 = any_dq(EMF_MAX_Q16);
   s->rotor_bpp = any_i32;
   s->mean_bpp = any_i32;
   s->agreed = any_from(0, IF_START_AGREED - 1);
   s->waited = any_from(0, c->wait_periods);
-  s->behind_bam = any_u32;
-  s->damps = any_bool();
 }
 
 // One step from each state leads to such a state again. A time at rest of `periods` to about twice as many: the current

@@ -389,7 +389,7 @@ def test_an_edition_without_a_store_does_not_touch_the_memory(memory: Path) -> N
     kept = memory.read_bytes()
     said = switch_on("minimal", memory, "set speed_ramp 600", "save", "load", "defaults")
     for name in ("save", "load", "defaults"):
-        assert f"'{name}' is not in this edition of the firmware, minimal" in said
+        assert f"'{name}' is not in this edition of the firmware, minimal: see 'Editions' in the book" in said
     assert memory.read_bytes() == kept
     assert has("lab", memory, flux_low="123.0", can_node="5", speed_ramp="500")
 

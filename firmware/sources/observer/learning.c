@@ -4,6 +4,9 @@
 #include "firmware/drive/steps.h"
 #include "firmware/sources/sources.h"
 
+// A period with three windows has no room for both the polarity's watch and what else has the slot.
+static bool is_full(const drive_t* d) { return d->samples.count >= ESTIMATOR_WINDOWS; }
+
 static bool is_slot(const drive_t* d, schedule_slot_t slot) { return d->schedule.slot == slot; }
 
 static void match_sensors(drive_t* d, const regression_t* r, int32_t share_q30) {
@@ -22,7 +25,7 @@ void source_learn(drive_t* d, const regression_t* r) {
   if (inductance) inverse_inductance_step(&d->model, r, share_q30);
   if (inductance == runs) {
     match_sensors(d, r, share_q30);
-  } else if (runs && !polarity_watch_is_awake(d)) {  // no period has room for both
+  } else if (runs && !(polarity_watch_is_awake(d) && is_full(d))) {
     const int32_t w_q30 = machine_speed_rad_q30(d->position.selected.speed_bpp);
     voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30 / 2 * 3);
   }

@@ -21,7 +21,6 @@ static void begin_if_ramp(drive_t* d) {
   static const estimator_output_t none = {0, 0, 0, 0};
   d->position.seen = none;
   if_start_begin(&if_ramp, 0, d->control.target_bpp < 0);
-  if_ramp.damps = (d->schedule.period & 1u) != 0u;  // where an observer that looks on leaves the windows out
   current_controller_reset(&d->control.current);
   d->control.closed = true;
   polarity_watch_end();
