@@ -85,17 +85,18 @@ def intel_hex(blocks):
     return "".join([*lines, ":00000001FF\n"]).encode()
 
 
-def coff(blocks, entry=0x3F7FF6, *, target=0x009D, flags=0x1103, heads_of=lambda address: (address, address)):
+def coff(blocks, entry=0x3F7FF6, *, target=0x009D, flags=0x1103, heads_of=lambda address: (address, address), empty=()):
     """An executable; one section is without content, as .ebss, and one a dummy.
 
     heads_of: the two addresses in the head of a section that is loaded to one.
+    empty: names, addresses and words of more sections without content.
     """
-    empty = (b".ebss", 0x8000, 100, 0, 0x80)
-    dummy = (b"dummy", 0x9000, 1, 1, 1)
-    count = len(blocks) + 2
+    others = [(b".ebss", 0x8000, 100, 0, 0x80), (b"dummy", 0x9000, 1, 1, 1)]
+    others += [(name, address, size, 0, 0x80) for name, address, size in empty]
+    count = len(blocks) + len(others)
     raw = 22 + 28 + 48 * count
     heads, content = b"", b""
-    for name, address, size, pointer, kind in (empty, dummy):
+    for name, address, size, pointer, kind in others:
         heads += struct.pack("<8sIIIIIIIIIHH", name, address, address, size, pointer and raw, 0, 0, 0, 0, kind, 0, 0)
     for index, block in enumerate(blocks):
         name, at = f"sect{index}".encode(), raw + len(content)

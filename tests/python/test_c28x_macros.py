@@ -92,6 +92,33 @@ _IQ24x:
 """Four cycles of the call, one for each of four instructions, four of the return; each read of the table waits."""
 
 
+@pytest.mark.parametrize(
+    ("written", "table"),
+    [
+        ("SUB ACC,#1", "SUB ACC,#1 << #0"),
+        ("ADD ACC,#100 << 4", "ADD ACC,#100 << #4"),
+        ("MOV ACC,*-SP[3] << 16", "MOV ACC,*-SP[3] << #16"),
+        ("OR ACC,#0x8000<<15", "OR ACC,#0x8000 << #15"),
+        ("LSL ACC,1", "LSL ACC,#1"),
+        ("ASR AL,3", "ASR AL,#3"),
+        ("SPM #0", "SPM 0"),
+    ],
+)
+def test_a_shift_may_be_written_as_the_compiler_writes_it(written, table):
+    assert assemble_line(written) == assemble_line(table)
+
+
+def test_a_shift_by_t_stays_one():
+    assert assemble_line("ADD ACC,@5 << T") != assemble_line("ADD ACC,@5 << #1")
+
+
+def test_a_dollar_is_the_address_of_its_instruction():
+    program = assemble(" .org 0x1000\n NOP\n LB $\n SB $-1,UNC\nhere: .word $, $C1\n$C1 .set 7")
+    assert [program.words[0x1001 + k] for k in range(2)] == assemble_line("LB 0x1001")
+    assert program.words[0x1003] == assemble_line("SB 0x1002,UNC", 0x1003)[0]
+    assert (program.words[0x1004], program.words[0x1005]) == (0x1004, 7)
+
+
 def test_heads_say_cycles_by_memory_and_fraction():
     lines = c28x_iqmath.published(ROUTINE.format(12, 14))
     assert [line.cycles for line in lines] == [12, 14, 99]

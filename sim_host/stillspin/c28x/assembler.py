@@ -80,6 +80,19 @@ def _words(form: Form, values: dict[str, int]) -> list[int]:
     return [bits >> WORD, bits & 0xFFFF] if form.words == 2 else [bits]
 
 
+_OTHER_SPELLINGS = tuple(
+    (re.compile(pattern), instead)
+    for pattern, instead in (
+        (r"((?:ADD|SUB|MOV|AND|OR|XOR) ACC,#[^<]+)", r"\1<<#0"),
+        (r"((?:ADD|SUB|MOV|AND|OR|XOR) ACC,[^<]+<<)([^#T].*)", r"\1#\2"),
+        (r"((?:LSL|LSR|ASR|SFR|LSL64|LSR64|ASR64) [^,]+,)([^#T].*)", r"\1#\2"),
+        (r"SPM #(.+)", r"SPM \1"),
+        (r"SUB ([^,]+),#(.+)", r"ADD \1,#-(\2)"),  # there is no such code of its own
+    )
+)
+"""What is no spelling of the table, as TI's compiler and examples write it: a shift of 0 left out, `#` left out or put in."""
+
+
 def assemble_line(text: str, address: int = 0, evaluate: Evaluate | None = None) -> list[int]:
     """The words of one instruction.
 
@@ -103,6 +116,7 @@ def assemble_line(text: str, address: int = 0, evaluate: Evaluate | None = None)
             reasons.append(str(error))
             continue
         return _words(spelling.form, values)
-    if mnemonic == "SUB" and (match := re.fullmatch(r"([^,]+),#(.+)", operands)):
-        return assemble_line(f"ADD {match[1]},#-({match[2]})", address, evaluate)  # there is no such code of its own
+    for pattern, instead in _OTHER_SPELLINGS:
+        if match := pattern.fullmatch(f"{mnemonic} {operands}"):
+            return assemble_line(match.expand(instead), address, evaluate)
     raise InputError(f"'{text.strip()}' is no instruction" + (f": {reasons[-1]}" if reasons else ""))

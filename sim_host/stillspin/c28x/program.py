@@ -8,8 +8,8 @@
     .word 1, COUNT+1     words as they are; .long the same with 32 bits, the lower half first
     .copy "start.asm"    the lines of another file, beside the one that says so; only of a file, not of a text
 
-All names are known everywhere, those of elsewhere are given: `.ref` is read over, and what `.def` or `.global` name a
-linked file tells others. Upper and lower case are the same.
+`$` is the address of what it stands in. All names are known everywhere, those of elsewhere are given: `.ref` is read
+over, and what `.def` or `.global` name a linked file tells others. Upper and lower case are the same.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from stillspin.errors import InputError
 
 _TOLD = (".DEF", ".GLOBAL")
 _READ_OVER = ".REF"
+_HERE = re.compile(r"(?<![\w$])\$(?![\w$])")
 
 
 class Line(NamedTuple):
@@ -59,6 +60,7 @@ class _Pass:
         self.at = 0
 
     def evaluate(self, text: str) -> int:
+        text = _HERE.sub(str(self.at), text)
         try:
             return evaluated(text, self.program.symbols)
         except ValueError:
