@@ -90,7 +90,7 @@ _OTHER_SPELLINGS = tuple(
         (r"SUB ([^,]+),#(.+)", r"ADD \1,#-(\2)"),  # there is no such code of its own
     )
 )
-"""What is no spelling of the table, as TI's compiler and examples write it: a shift of 0 left out, `#` left out or put in."""
+"""What the table has no spelling of, as TI's compiler writes it: a shift of 0 left out, `#` left out or not."""
 
 
 def assemble_line(text: str, address: int = 0, evaluate: Evaluate | None = None) -> list[int]:
