@@ -118,16 +118,13 @@ void set_register(Self self, const std::string& name, std::uint32_t value) {
 }
 
 void stop_at(Self self, const std::vector<std::uint32_t>& addresses, bool traps,
-             const std::vector<std::uint32_t>& words) {
+             const std::vector<std::pair<std::uint32_t, std::uint8_t>>& words) {
   c28x::Core& core = self.board().code();
-  for (const std::uint32_t address : words) {
-    if (core.writable_word(address) == nullptr) throw std::invalid_argument("a word is in no RAM");
-  }
-  core.watch().stop_nowhere();
+  core.stop_nowhere();
   core.set_stop_at_breakpoint(traps);
   core.set_stop_at_illegal(traps);
   for (const std::uint32_t address : addresses) core.watch().stop_at(address, true);
-  for (const std::uint32_t address : words) core.watch().stop_on_change(address, core.writable_word(address));
+  for (const auto& [address, kinds] : words) core.stop_on(address, kinds);
 }
 
 nb::list traced(Self self) {
@@ -199,16 +196,16 @@ void bind_code(nb::class_<PythonBoard>& board) {
       .def("registers", [](Self self) { return dict_of(self.board().code().r); })
       .def("set_register", &set_register, nb::arg("name"), nb::arg("value"))
       .def("stop_at", &stop_at, nb::arg("addresses"), nb::arg("traps") = false,
-           nb::arg("words") = std::vector<std::uint32_t>{})
+           nb::arg("words") = std::vector<std::pair<std::uint32_t, std::uint8_t>>{})
       .def(
           "stop_after",
           [](Self self, std::uint64_t instructions) { self.board().code().watch().stop_after(instructions); },
           nb::arg("instructions"))
-      .def_prop_ro("changed",
-                   [](Self self) -> std::optional<std::uint32_t> {
-                     const std::uint32_t address = self.board().code().watch().changed();
-                     if (address == c28x::Watch::kNowhere) return std::nullopt;
-                     return address;
+      .def_prop_ro("accessed",
+                   [](Self self) -> std::optional<std::pair<std::uint32_t, std::uint8_t>> {
+                     const c28x::Watch::Access& access = self.board().code().watch().accessed();
+                     if (access.address == c28x::Watch::kNowhere) return std::nullopt;
+                     return std::make_pair(access.address, access.kinds);
                    })
       .def_prop_ro("halted", [](Self self) { return self.board().code().watch().halted; })
       .def(

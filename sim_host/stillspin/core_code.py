@@ -46,19 +46,19 @@ class NativeCode(Protocol):
         """One of them. ValueError for a name that is none."""
         ...
 
-    def stop_at(self, addresses: list[int], traps: bool = False, words: list[int] = ...) -> None:
+    def stop_at(self, addresses: list[int], traps: bool = False, words: list[tuple[int, int]] = ...) -> None:
         """Let `advance` end before the instructions at these addresses, and no longer at others.
 
         Args:
             addresses: of code.
             traps: also at ESTOP0 and at what is no instruction, before it traps.
-            words: addresses of RAM, to end behind the instruction that changes one; ValueError for another address.
+            words: addresses of data, and what an instruction does there behind which to end: 1 reads, 2 writes, 3 both.
         """
         ...
 
     @property
-    def changed(self) -> int | None:
-        """Which of those words was changed, where the last `advance` ended for that."""
+    def accessed(self) -> tuple[int, int] | None:
+        """Which of those words was read (1), written (2) or both (3), where the last `advance` ended for that."""
         ...
 
     def stop_after(self, instructions: int) -> None:

@@ -18,6 +18,7 @@ from stillspin.image.gdb import Remote
 from stillspin.image.gdb_packets import Line, framed
 
 PATIENCE = 20
+CMPA = 0x6809
 
 
 class Client:
@@ -153,11 +154,51 @@ def test_a_word_that_is_written_stops_behind_its_instruction(client, at):
     assert at["sample"] < place < at["sample"] + 40
     assert rest == [(place, first + 1), (place, first + 2)], "once in each interrupt"
     assert client.ask(f"z2,{at['COUNT']:x},1") == "OK"
-    assert client.ask("Z2,6f8a,1") == "E01", "a register is no word of RAM"
-    assert client.ask("Z3,8000,1") == "", "reads are not watched"
+    assert client.ask("Z2,c000,1") == "E01", "the chip has no memory there"
+    assert client.ask("Z5,8000,1") == "", "there is no such type"
     client.ask(f"Z0,{at['beside']:x},2")
     assert client.ask("c") == "S05"
     client.ask(f"z0,{at['beside']:x},2")
+
+
+def stops(client, at, points, count):
+    """What is told at so many stops: the way, the word's name, and the instruction before, by its offset."""
+    names = {at[name]: name for name in ("COUNT", "REF", "LAST")} | {CMPA: "CMPA"}
+    for point in points:
+        assert client.ask("Z" + point) == "OK"
+    told = []
+    for _ in range(count):
+        way, place = re.fullmatch(r"T05(\w+):([0-9a-f]+);", client.ask("c")).groups()
+        told.append((way, names[int(place, 16)], client.register("PC") - at["sample"]))
+    for point in points:
+        assert client.ask("z" + point) == "OK"
+    return told
+
+
+def test_a_word_that_is_read_stops_behind_its_instruction(client, at):
+    (told, *rest) = stops(client, at, [f"3,{at['REF']:x},1"], 3)
+    assert told[:2] == ("rwatch", "REF")
+    assert rest == [told] * 2, "once in each interrupt; nobody else reads it while no octet comes"
+
+
+def test_a_word_that_is_read_or_written_stops_at_both(client, at):
+    last = f"4,{at['LAST']:x},1"
+    first, second, *rest = stops(client, at, [last], 4)
+    assert {first[:2], second[:2]} == {("awatch", "LAST")}
+    assert first != second, "written by one instruction, read by another"
+    assert rest == [first, second]
+
+
+def test_each_is_told_as_it_was_asked_for(client, at):
+    told = stops(client, at, [f"2,{at['LAST']:x},1", f"3,{at['LAST']:x},1"], 2)
+    assert {way for way, *_ in told} == {"watch", "rwatch"}
+
+
+def test_a_write_of_what_is_there_already_is_one_and_a_register_may_be_watched(client, at):
+    """The compare value stays 0 as long as the duty is: GDB itself leaves out what changes nothing."""
+    told = stops(client, at, [f"2,{CMPA:x},1"], 2)
+    assert {row[:2] for row in told} == {("watch", "CMPA")}
+    assert told[0] == told[1]
 
 
 def test_steps_go_through_the_code(client, at):

@@ -133,3 +133,19 @@ def test_a_core_that_sleeps_ends_the_list(tmp_path):
     assert done.returncode == 0, done.stderr
     assert "IDLE" in done.stdout
     assert done.stdout.splitlines()[-1] == "no more instructions within 0.001 s: the core sleeps"
+
+
+def test_a_watched_word_takes_no_time(tmp_path):
+    """The same program with and without: its cycles at one place are the same."""
+    found = []
+    for words in ([], [(0x8003, 3), (0x8001, 1)]):
+        image = opened.read(linked_file(tmp_path, "control"))
+        board = opened.power_on(image, "bench", "A", 1)
+        with opened.closing(board, image):
+            board.stop_at([image.names.addresses["sample"]], words=words)
+            stopped = 0
+            while stopped < 5:
+                board.advance(100_000)
+                stopped += board.halted and board.registers()["PC"] == image.names.addresses["sample"]
+            found.append(board.code()["cycles"])
+    assert found[0] == found[1]

@@ -160,6 +160,12 @@ void Core::return_from_interrupt() {
   if (r.amode) stop_unmodelled();
 }
 
+void Core::note_access(std::uint32_t address, std::uint32_t words, std::uint8_t kind) {
+  for (std::uint32_t at = address; at < address + words; ++at) {
+    watch_->note_access(at & kProgramMask, readable_word(at), kind);
+  }
+}
+
 void Core::push32(std::uint32_t value) {
   write32(r.sp, value);
   r.sp = static_cast<std::uint16_t>(r.sp + 2);

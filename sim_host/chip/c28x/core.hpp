@@ -47,6 +47,17 @@ class Core : public MappedMemory, public Timing {
     return *watch_;
   }
 
+  /// Stops where it is told to no longer.
+  void stop_nowhere() {
+    watch().stop_nowhere();
+    watches_data_ = false;
+  }
+  /// Stops behind the instruction that reads or writes this word (Watch::kRead, kWrite or both).
+  void stop_on(std::uint32_t address, std::uint8_t kinds) {
+    watch().stop_on(address, readable_word(address), kinds);
+    watches_data_ = true;
+  }
+
   /// The address of the instruction that is being executed, for the bus; at the entry into an interrupt, and in a jump
   /// that goes on elsewhere, the program counter may be all that is known.
   std::uint32_t executing() const;
@@ -78,18 +89,22 @@ class Core : public MappedMemory, public Timing {
   static constexpr std::uint32_t kInRegister = 0x80000000;
   std::uint16_t read16(std::uint32_t address) {
     note_read(address, 1);
+    if (watches_data_) note_access(address, 1, Watch::kRead);
     return MappedMemory::read16(address);
   }
   std::uint32_t read32(std::uint32_t address) {
     note_read(address & ~1U, 2);
+    if (watches_data_) note_access(address & ~1U, 2, Watch::kRead);
     return MappedMemory::read32(address);
   }
   void write16(std::uint32_t address, std::uint16_t value) {
     note_write(address, 1);
+    if (watches_data_) note_access(address, 1, Watch::kWrite);
     MappedMemory::write16(address, value);
   }
   void write32(std::uint32_t address, std::uint32_t value) {
     note_write(address & ~1U, 2);
+    if (watches_data_) note_access(address & ~1U, 2, Watch::kWrite);
     MappedMemory::write32(address, value);
   }
   std::uint32_t locate(unsigned loc, unsigned step);
@@ -154,6 +169,7 @@ class Core : public MappedMemory, public Timing {
   void execute(const Instruction& i);
   void carry_out(const Instruction& i);
   bool serve_interrupts();
+  void note_access(std::uint32_t address, std::uint32_t words, std::uint8_t kind);
   void enter_interrupt(unsigned vector);
 
   static constexpr std::uint32_t kDecoded = 1U << 14;
@@ -170,6 +186,7 @@ class Core : public MappedMemory, public Timing {
   bool nmi_ = false;
   bool stop_at_breakpoint_ = false;
   bool stop_at_illegal_ = false;
+  bool watches_data_ = false;
   Stop stop_ = Stop::kNone;
   std::vector<Instruction>
       decoded_;  // by the lowest bits of the address, each checked against the words that are there

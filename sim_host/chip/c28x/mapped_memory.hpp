@@ -51,9 +51,9 @@ class MappedMemory {
     page[a % kPage + 1] = high_half(value);
   }
 
-  /// Where the core writes this word by itself; nullptr where the bus does.
-  const std::uint16_t* writable_word(std::uint32_t address) const {
-    const std::uint16_t* page = writable_[(address & kProgramMask) / kPage];
+  /// Where the core reads this word by itself; nullptr where the bus does.
+  const std::uint16_t* readable_word(std::uint32_t address) const {
+    const std::uint16_t* page = readable_[(address & kProgramMask) / kPage];
     return page == nullptr ? nullptr : page + address % kPage;
   }
 

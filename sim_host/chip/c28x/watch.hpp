@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "sim_host/chip/c28x/profile.hpp"
@@ -29,15 +30,34 @@ class Watch {
   void stop_nowhere() {
     for (std::uint8_t& marked : marks_) marked = static_cast<std::uint8_t>(marked & ~kStop);
     data_.clear();
-    changed_ = kNowhere;
+    accessed_ = {};
   }
   /// Stops after so many instructions, repeats not counted; entries into interrupts are none.
   void stop_after(std::uint64_t instructions) { left_ = instructions; }
-  /// Stops behind the instruction that changes this word of memory, which is at the address.
-  void stop_on_change(std::uint32_t address, const std::uint16_t* word) { data_.push_back({address, word, *word}); }
-  /// The address of the word for which it last stopped so; kNowhere: another reason.
-  std::uint32_t changed() const { return changed_; }
   static constexpr std::uint32_t kNowhere = ~0U;
+  enum : std::uint8_t { kRead = 1, kWrite = 2 };
+  /// What an instruction did to a word that was to be watched.
+  struct Access {
+    std::uint32_t address = kNowhere;
+    std::uint8_t kinds = 0;
+  };
+  /// Stops behind the instruction that does this to a word: kRead, kWrite or both. `word` is where the core has it,
+  /// which may be at two addresses; nullptr where the bus has it.
+  void stop_on(std::uint32_t address, const std::uint16_t* word, std::uint8_t kinds) {
+    data_.push_back({address, word, kinds});
+  }
+  bool watches_data() const { return !data_.empty(); }
+  /// One of the words of an access, from the core.
+  void note_access(std::uint32_t address, const std::uint16_t* word, std::uint8_t kind) {
+    for (const Data& data : data_) {
+      const bool is_it = word != nullptr ? data.word == word : data.address == address;
+      if (!is_it || (data.kinds & kind) == 0) continue;
+      if (noted_.address == kNowhere) noted_.address = data.address;
+      if (noted_.address == data.address) noted_.kinds = static_cast<std::uint8_t>(noted_.kinds | kind);
+    }
+  }
+  /// The word for which it last stopped so; kNowhere: another reason.
+  const Access& accessed() const { return accessed_; }
 
   /// Other code than the memory's is at this address; whoever runs the core carries it out.
   void replace_code_at(std::uint32_t address) { mark(address, kReplaced, true); }
@@ -69,7 +89,7 @@ class Watch {
     const std::uint8_t marked = mark_at(r.pc);
     const bool passing = r.pc == passing_;
     passing_ = kNowhere;
-    if ((!passing && (left_ == 0 || (marked & kStop) != 0)) || (!data_.empty() && any_changed())) {
+    if ((!passing && (left_ == 0 || (marked & kStop) != 0)) || (!data_.empty() && any_accessed())) {
       passing_ = r.pc;
       left_ = kUnlimited;
       replaced_ = false;
@@ -94,18 +114,12 @@ class Watch {
   struct Data {
     std::uint32_t address;
     const std::uint16_t* word;
-    std::uint16_t seen;
+    std::uint8_t kinds;
   };
 
-  bool any_changed() {
-    for (Data& data : data_) {
-      if (*data.word == data.seen) continue;
-      changed_ = data.address;
-      data.seen = *data.word;
-      return true;
-    }
-    changed_ = kNowhere;
-    return false;
+  bool any_accessed() {
+    accessed_ = std::exchange(noted_, {});
+    return accessed_.address != kNowhere;
   }
 
   // Where an F2808 has no memory nothing is marked: there is no instruction before which to stop.
@@ -122,7 +136,7 @@ class Watch {
   std::uint64_t left_ = kUnlimited;
   std::uint32_t passing_ = kNowhere;
   std::vector<Data> data_;
-  std::uint32_t changed_ = kNowhere;
+  Access noted_, accessed_;
   bool replaced_ = false;
   std::vector<Traced> trace_;
   std::uint64_t traced_ = 0;

@@ -26,8 +26,11 @@ _ASKED = "S02"
 _ILLEGAL = "S04"
 """The signals SIGTRAP, SIGINT, SIGILL: a breakpoint, a step or the beginning; Ctrl-C; what is no instruction."""
 _WRONG = "E01"
-_BREAKPOINTS, _WATCHPOINT = frozenset("01"), "2"
-"""Types of `Z`: in memory, in hardware; a write to data."""
+_BREAKPOINTS = frozenset("01")
+"""Types of `Z`: in memory, in hardware."""
+_READS, _WRITES = 1, 2
+_WATCHPOINTS = {"2": (_WRITES, "watch"), "3": (_READS, "rwatch"), "4": (_READS | _WRITES, "awatch")}
+"""Those for data: what an instruction does there, and how a stop is told."""
 _TRAP_WORD = 0x7625
 """ESTOP0."""
 _SUPPORTED = f"PacketSize={LARGEST:x};qXfer:features:read+;QStartNoAckMode+;vContSupported+;swbreak-;hwbreak-"
@@ -64,7 +67,7 @@ class Remote:
         self._peer: socket.socket | None = None
         self._line = Line()
         self._places: set[int] = set()
-        self._words: set[int] = set()
+        self._words: set[tuple[str, int]] = set()
         self._stopped = _TRAPPED
         self._stepping = False
         self.runs = True
@@ -223,16 +226,16 @@ class Remote:
         return "OK"
 
     def _place(self, rest: str, *, on: bool) -> str:
-        """A breakpoint, both kinds are the core's own, so that no code is changed; or words of RAM to watch."""
+        """A breakpoint, both kinds are the core's own, so that no code is changed; or words to watch."""
         kind, address, *more = rest.split(",")
         first = int(address, 16)
         if kind in _BREAKPOINTS:
             (self._places.add if on else self._places.discard)(first)
             return "OK"
-        if kind != _WATCHPOINT:
+        if kind not in _WATCHPOINTS:
             return ""
-        words = set(range(first, first + int(more[0], 16)))
-        if on and not all(target.is_ram(word) for word in words):
+        words = {(kind, first + offset) for offset in range(min(int(more[0], 16), LARGEST))}
+        if on and not all(target.is_there(address) for _, address in words):
             return _WRONG
         self._words = self._words | words if on else self._words - words
         return "OK"
@@ -256,9 +259,14 @@ class Remote:
 
     def _reason(self) -> str:
         """Why it has stopped, as the protocol says it."""
-        if (changed := self._board.changed) is not None:
-            return f"T05watch:{changed:x};"
+        if accessed := self._board.accessed:
+            return f"T05{self._watched(*accessed)}:{accessed[0]:x};"
         return _ILLEGAL if self._at_illegal() else _TRAPPED
+
+    def _watched(self, address: int, done: int) -> str:
+        """How an access is told: a debugger asks for a word in more than one way at times."""
+        ways = [way for kind, way in _WATCHPOINTS.items() if (kind, address) in self._words and way[0] & done]
+        return ways[0][1] if ways else _WATCHPOINTS["4"][1]
 
     def _at_illegal(self) -> bool:
         return runaway.is_illegal(self._board.words(self._board.registers()["PC"], 2))
@@ -279,11 +287,18 @@ class Remote:
                 self._stopped, self._stepping = self._reason(), False
                 self._say(self._stopped)
                 return
-        self._board.stop_at(sorted(self._places), traps=self._peer is not None, words=sorted(self._words))
+        self._board.stop_at(sorted(self._places), traps=self._peer is not None, words=self._accesses())
         if self._stepping:
             self._board.stop_after(1)
         self._stepping = False
         self.runs = True
+
+    def _accesses(self) -> list[tuple[int, int]]:
+        """Of each word all that it is watched for."""
+        found: dict[int, int] = {}
+        for kind, address in self._words:
+            found[address] = found.get(address, 0) | _WATCHPOINTS[kind][0]
+        return sorted(found.items())
 
     def _trap(self) -> None:
         """Through what is no instruction, to the first one of the trap's routine."""

@@ -78,10 +78,9 @@ def memory(board: NativeBoard, address: int, count: int) -> str:
     return "".join(digits(word, 16) for word in board.words(address, count))
 
 
-def is_ram(address: int) -> bool:
-    """Whether a word there can be watched."""
-    memory = memories.at(address)
-    return memory is not None and memory.group == "RAM"
+def is_there(address: int) -> bool:
+    """Whether there is a word to watch: of a memory, or a register."""
+    return memories.at(address) is not None
 
 
 def set_memory(board: NativeBoard, address: int, text: str) -> None:
