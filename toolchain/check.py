@@ -30,6 +30,7 @@ from checks import (
     pieces,
     registers,
     tables,
+    writers,
 )
 from checks.preprocessor import SOURCE_FOLDERS, SUFFIXES
 
@@ -63,6 +64,7 @@ TREE_CHECKS: dict[str, Callable[[Path], list[Finding]]] = {
     "faces": faces.check,
     "comparisons": comparisons.check,
     "interrupt": interrupt.check,
+    "writers": writers.check,
     "inside": inside.check,
     "circles": circles.check,
     "conditionals": conditionals.check,
@@ -80,6 +82,7 @@ DESCRIPTIONS = {
     "faces": "the firmware's headers are small",
     "comparisons": "nobody asks which position source is chosen",
     "interrupt": "interrupts read the configuration, no parameters",
+    "writers": "what a period has is written by its owner",
     "inside": "tests see the drive by names of the field",
     "circles": "no circle of imports in the Python package",
     "conditionals": "no code that only one build sees",

@@ -21,7 +21,7 @@
 
 void commissioning_set_d(drive_t* d, int32_t level_q20) {
   const int32_t step = d->config.values.current_limit / SLOPE_STEPS;
-  dq_t* const r = &d->control.reference_q20;
+  dq_t* const r = &d->control.references.current_q20;
   r->d = q_clamp(level_q20, r->d - step, r->d + step);
 }
 
@@ -31,16 +31,17 @@ void commissioning_hold(drive_t* d) {
   const int32_t command_q8 =
       qc_sub_sat(qc_mul_sat(error_bam, STIFFNESS_Q30, 22), qc_mul_sat(p->speed_bpp, DAMPING_Q30, 22));
   const int32_t torque_q20 = qc_mul_sat(qc_add_sat(command_q8, p->load_accel_q8), d->model.torque_per_accel_q24, 20);
-  const int32_t current = q_div(torque_q20, machine_torque_constant_q24(&d->model, d->control.reference_q20.d), 24);
+  const int32_t current =
+      q_div(torque_q20, machine_torque_constant_q24(&d->model, d->control.references.current_q20.d), 24);
   const int32_t limit = commissioning.uniform ? 0 : d->config.values.current_limit / 4;
-  d->control.reference_q20.q = q_clamp(current, -limit, limit);
+  d->control.references.current_q20.q = q_clamp(current, -limit, limit);
 }
 
 bool commissioning_align(drive_t* d) {
   commissioning_t* const c = &commissioning;
   if (c->tick == 0) {
     c->uniform = d->found.uniform;
-    d->control.closed = true;
+    d->control.references.closed = true;
     c->target_bam = d->position.selected.angle_bam;
     const int32_t sixths = (int32_t)q_div((int32_t)(c->target_bam / 2u), SIXTH_BAM / 2, 0);
     c->goal_bam = (uint32_t)sixths * (uint32_t)SIXTH_BAM;
@@ -62,21 +63,17 @@ void commissioning_add_still(const drive_t* d) {
 
 // AVV alone, or no measurement at all and the angle by the torque. A machine without an axis is not measured at rest:
 // its rotor turns to where the current points.
-void commissioning_estimate(drive_t* d, estimator_input_t* in) {
+estimator_output_t commissioning_estimate(drive_t* d, estimator_input_t* in) {
   if (commissioning.uniform) {
     const estimator_output_t still = {commissioning.target_bam, 0, 0, 0};
-    d->position.selected = still;
-    return;
+    return still;
   }
-  if (!commissioning.predicting) {
-    d->position.selected = position_sources[POSITION_AVV]->step(d, in);
-    return;
-  }
+  if (!commissioning.predicting) return position_sources[POSITION_AVV]->step(d, in);
   if (d->schedule.moves) machine_model_follow(&d->model, d->control.measured_q20.q);
   tracking_observer_t* const o = &d->position.avv.observer;
   tracking_observer_predict(o, qc_add_sat(in->torque_accel_q8, o->load_accel_q8));  // the load as of now is left out
   const estimator_output_t out = {o->angle_bam, o->speed_bpp, o->load_accel_q8, 32767};
-  d->position.selected = out;
+  return out;
 }
 
 // Windows under opposite vectors, as the alternating layout has them: what is common to both is then not the link.

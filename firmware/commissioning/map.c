@@ -91,10 +91,10 @@ static bool usable(const map_t* m, uint16_t segment) {
 static void follow(drive_t* d, map_t* m, int32_t target_q20) {
   const int32_t step = d->config.values.current_limit / SLOPE_STEPS;
   const int32_t last = m->plan[0];
-  d->control.reference_q20.q = m->plan[1];
+  d->control.references.current_q20.q = m->plan[1];
   m->plan[1] = last;
   m->plan[0] = q_limit(q_clamp(target_q20, last - step, last + step), d->config.values.current_limit);
-  d->control.feed_forward_q16 = q_div(m->plan[0] - last, d->model.yq_q30, 26);
+  d->control.references.feed_forward_q16 = q_div(m->plan[0] - last, d->model.yq_q30, 26);
 }
 
 static void run_train(drive_t* d, map_t* m) {

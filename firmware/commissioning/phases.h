@@ -18,7 +18,7 @@ void commissioning_set_d(drive_t* d, int32_t level_q20);  // i_d reference, with
 /// A pair of windows at rest and without current, for the inductances there.
 void commissioning_add_still(const drive_t* d);
 /// Angle and speed while the shaft is held (commissioning/hold.c).
-void commissioning_estimate(drive_t* d, estimator_input_t* in);
+estimator_output_t commissioning_estimate(drive_t* d, estimator_input_t* in);
 /// The period's two opposite windows against the model, in the frame that they were turned into; false when there are
 /// none.
 bool commissioning_pair(const drive_t* d, deviation_t* first, deviation_t* second);

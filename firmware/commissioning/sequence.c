@@ -76,7 +76,7 @@ static void next_phase(drive_t* d) {
     return;
   }
   hal_pwm_gates_off();
-  d->control.closed = false;
+  d->control.references.closed = false;
   d->flags.spins = false;
   d->flags.over = true;
   c->evaluate = true;

@@ -50,7 +50,10 @@ static void start_by_vector(drive_t* d) {
 }
 
 static void begin(drive_t* d) {
-  if (!d->flags.spins) drive_bumpless_transfer(d, d->position.selected.angle_bam, 0);
+  if (!d->flags.spins) {
+    drive_bumpless_transfer(d, d->position.selected.angle_bam, 0);
+    d->control.references.current_q20.q = 0;
+  }
   d->flags.spins = true;
   d->flags.frozen = false;
   d->control.target_bpp = d->control.ramp.value;
@@ -73,7 +76,7 @@ static bool hand_back(drive_t* d) {
     d->flags.spins = false;
     c->solve_motion = true;
     position_preset(d, d->position.selected.angle_bam, 0);
-    d->control.reference_q20.d = 0;
+    d->control.references.current_q20.d = 0;
     c->target_bam = d->position.selected.angle_bam;
   }
   commissioning_hold(d);

@@ -107,7 +107,7 @@ bool commissioning_climb(drive_t* d) {
   commissioning_hold(d);
   if (s->index >= STAIRCASE_LEVELS) {
     commissioning_set_d(d, 0);
-    if (d->control.reference_q20.d != 0) return false;
+    if (d->control.references.current_q20.d != 0) return false;
     s->tick = qc_add_sat(s->tick, 1);
     commissioning_add_still(d);
     return s->tick > SETTLE_PERIODS + 1;

@@ -16,8 +16,8 @@ SIGNAL(weight, NONE, 15, DRIVE, d->position.blend.share_q15, "share of the low-s
 SIGNAL(speed_reference, RPM, 16, DRIVE, SIGNAL_RPM(d->control.ramp.value), "speed reference after the ramp")
 SIGNAL(current_d, A, 20, FRAME, d->control.measured_q20.d, "measured d-axis current, mean of the period")
 SIGNAL(current_q, A, 20, FRAME, d->control.measured_q20.q, "measured q-axis current")
-SIGNAL(current_d_reference, A, 20, DRIVE, d->control.reference_q20.d, "d-axis current reference")
-SIGNAL(current_q_reference, A, 20, DRIVE, d->control.reference_q20.q, "q-axis current reference")
+SIGNAL(current_d_reference, A, 20, DRIVE, d->control.references.current_q20.d, "d-axis current reference")
+SIGNAL(current_q_reference, A, 20, DRIVE, d->control.references.current_q20.q, "q-axis current reference")
 SIGNAL(voltage_d, V, 16, DRIVE, d->control.command_q16.d, "d-axis voltage command")
 SIGNAL(voltage_q, V, 16, DRIVE, d->control.command_q16.q, "q-axis voltage command")
 SIGNAL(voltage_alpha, V, 16, DRIVE, d->modulation.command_q16.alpha,

@@ -12,5 +12,4 @@ void drive_bumpless_transfer(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) 
   hold_end();
   polarity_watch_begin(angle_bam, speed_bpp);
   d->control.ramp.value = speed_bpp;
-  d->control.reference_q20.q = 0;
 }

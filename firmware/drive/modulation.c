@@ -96,7 +96,7 @@ static void modulate_into(drive_t* d, uint16_t made) {
   d->modulation.command_q16 = command_q16;
   const modulator_result_t result = modulator_step(&d->modulation.state, &d->config.modulator, excitation(d),
                                                    command_q16, d->samples.link_q16, &pattern->pulses);
-  if (result.limited && c->closed) {
+  if (result.limited && c->references.closed) {
     const ab_t excess_q16 = {command_q16.alpha - result.realised_q16.alpha,
                              command_q16.beta - result.realised_q16.beta};
     current_controller_limited(&c->current, &d->config.current, frame_park(excess_q16, r));

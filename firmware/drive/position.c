@@ -111,7 +111,7 @@ void drive_estimate(drive_t* d) {
   d->position.torque_accel_q8 = in.torque_accel_q8;
   inertia_match_add(&inertia_match, in.torque_accel_q8);
   if (open_loop || measuring) {
-    drive_states[d->state]->estimate(d, &in);
+    d->position.selected = drive_states[d->state]->estimate(d, &in);
   } else {
     d->position.selected = source->step(d, &in);
   }
@@ -144,4 +144,7 @@ void position_preset(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
   p->high = p->selected;
 }
 
-void position_keep(drive_t* d) { begin_sources(d, true); }
+void position_keep(drive_t* d) {
+  d->position.selected = d->position.seen;
+  begin_sources(d, true);
+}

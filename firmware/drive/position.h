@@ -25,7 +25,7 @@ bool position_observer_rests(const drive_t* d);
 /// Gives the shaft to the high-speed estimator alone, whatever the speed; the blend goes on from there.
 void position_bumpless_transfer(drive_t* d);
 
-/// What a source has seen of a shaft that a vector turned holds from here on.
+/// What the source has seen of a shaft that a vector turned is used from here on, and it goes on as it is.
 void position_keep(drive_t* d);
 
 /// True where the deviation observer reads the windows now.

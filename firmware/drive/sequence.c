@@ -58,7 +58,7 @@ static void abandon(drive_t* d) {
 // Opens the power stage at once and goes back to READY.
 static void coast(drive_t* d) {
   hal_pwm_gates_off();
-  d->control.closed = false;
+  d->control.references.closed = false;
   abandon(d);
   drive_enter(d, DRIVE_READY);
 }

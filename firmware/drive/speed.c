@@ -20,7 +20,7 @@ static int32_t voltage_limit(const drive_t* d) {
 static void weaken(drive_t* d) {
   drive_control_t* const c = &d->control;
   const field_weakening_input_t in = {d->position.selected.speed_bpp,
-                                      c->reference_q20.q,
+                                      c->references.current_q20.q,
                                       q_hypot(c->command_q16.d, c->command_q16.q),
                                       voltage_limit(d),
                                       d->config.values.weakening_limit,
@@ -31,14 +31,14 @@ static void weaken(drive_t* d) {
 static void refer_field(drive_t* d) {
   drive_control_t* const c = &d->control;
   int32_t bias = (d->position.blend.region == BLEND_HIGH) ? 0 : d->config.values.id_low_speed;
-  int32_t least = (d->config.values.mtpa == 0) ? 0 : mtpa_current_q20(&d->config.mtpa, c->reference_q20.q);
+  int32_t least = (d->config.values.mtpa == 0) ? 0 : mtpa_current_q20(&d->config.mtpa, c->references.current_q20.q);
   if (d->source->highest_d_q20 != NULL) least = q_min(least, d->source->highest_d_q20(d));
   // A commissioning takes its spin for one without i_d.
   if (d->state == DRIVE_COMMISSION) {
     bias = 0;
     least = 0;
   }
-  c->reference_q20.d =
+  c->references.current_q20.d =
       q_clamp(q_add_sat(q_min(c->weakening_q20, least), bias), -c->current_limit_q20, c->current_limit_q20);
   d->limits &= ~(int32_t)LIMIT_WEAKENING;
   if (c->weakening_q20 < 0) d->limits |= LIMIT_WEAKENING;
@@ -74,7 +74,8 @@ static int32_t usable_current(const drive_t* d) {
 
 int32_t drive_current_headroom(const drive_t* d) {
   const int32_t limit = usable_current(d);
-  const int64_t room = (int64_t)limit * limit - (int64_t)d->control.reference_q20.d * d->control.reference_q20.d;
+  const int64_t room =
+      (int64_t)limit * limit - (int64_t)d->control.references.current_q20.d * d->control.references.current_q20.d;
   return (room > 0) ? q_min((int32_t)q_sqrt64((uint64_t)room), limit) : 0;
 }
 
@@ -93,7 +94,7 @@ static int32_t braking_headroom(const drive_t* d, int32_t headroom_q20) {
 // Both follow the reference of i_d.
 static void make_torque_constant(drive_t* d) {
   drive_control_t* const c = &d->control;
-  c->per_torque_constant = q_invert(machine_torque_constant_q24(&d->model, c->reference_q20.d));
+  c->per_torque_constant = q_invert(machine_torque_constant_q24(&d->model, c->references.current_q20.d));
 }
 
 static void make_room(drive_t* d) {
@@ -139,7 +140,7 @@ static void step_ramp(drive_t* d, speed_controller_input_t* in) {
 }
 
 static void note_limits(drive_t* d, const speed_controller_input_t* in) {
-  const int32_t iq_q20 = d->control.reference_q20.q;
+  const int32_t iq_q20 = d->control.references.current_q20.q;
   const int32_t room = q_max(in->highest_q20, -in->lowest_q20);
   if (q_abs_sat(iq_q20) >= room) d->limits |= LIMIT_CURRENT;
   const bool at_end = iq_q20 <= in->lowest_q20 || iq_q20 >= in->highest_q20;
@@ -156,10 +157,10 @@ static void step_speed(drive_t* d, bool held) {
   in.load_current_q20 = load_current(d);
   limit_current(d, &in);
   if (held) {
-    speed_controller_preset(&c->speed, q_sub_sat(c->reference_q20.q, in.load_current_q20));
+    speed_controller_preset(&c->speed, q_sub_sat(c->references.current_q20.q, in.load_current_q20));
     return;
   }
-  c->reference_q20.q = speed_controller_step(&c->speed, (speed_law_t)d->config.values.speed_law, &in);
+  c->references.current_q20.q = speed_controller_step(&c->speed, (speed_law_t)d->config.values.speed_law, &in);
   note_limits(d, &in);
 }
 

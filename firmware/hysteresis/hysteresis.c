@@ -132,7 +132,7 @@ static int32_t to_codes_q8(const drive_t* d, int32_t amps_q20) {
 }
 
 static abc_t reference_codes_q8(const drive_t* d, uint32_t angle_bam) {
-  const abc_t i = frame_inverse_clarke(frame_fixed(d->control.reference_q20, angle_bam));
+  const abc_t i = frame_inverse_clarke(frame_fixed(d->control.references.current_q20, angle_bam));
   const abc_t codes = {to_codes_q8(d, i.a), to_codes_q8(d, i.b), to_codes_q8(d, i.c)};
   return codes;
 }

@@ -17,6 +17,7 @@
 #include "estimators/slopes.h"
 #include "estimators/synchronism.h"
 #include "estimators/voltage_match.h"
+#include "firmware/interfaces/references.h"
 #include "firmware/interfaces/schedule.h"
 #include "firmware/interfaces/source.h"
 #include "svpwm/modulator.h"
@@ -63,14 +64,12 @@ typedef struct {
   q_inverse_t per_torque_constant;             // of N m per A, Q24, at the reference of i_d
   ramp_t ramp;
   position_hold_t position_hold;  // kept at a reference of zero
-  dq_t reference_q20;             // current reference
-  dq_t measured_q20;              // mean current of the last period
-  dq_t command_q16;               // voltage command
-  int32_t feed_forward_q16;       // q-axis voltage for a change of the reference that is known beforehand
-  int32_t command_rpm_q16;        // speed command, mechanical
-  int32_t target_bpp;             // the same, electrical
-  bool closed;                    // current loop closed
-  bool speed_ready;               // the speed controller could be set up
+  references_t references;
+  dq_t measured_q20;        // mean current of the last period
+  dq_t command_q16;         // voltage command
+  int32_t command_rpm_q16;  // speed command, mechanical
+  int32_t target_bpp;       // the same, electrical
+  bool speed_ready;         // the speed controller could be set up
 } drive_control_t;
 
 typedef struct {

@@ -27,7 +27,7 @@ typedef struct {
   void (*step)(struct drive* d);
   /// Angle and speed in use, in the place of the position source: in the open-loop ramp, and at the standstill of
   /// COMMISSION.
-  void (*estimate)(struct drive* d, estimator_input_t* in);
+  estimator_output_t (*estimate)(struct drive* d, estimator_input_t* in);
   /// COMMISSION: it is not wanted any more, whatever state the drive is in.
   void (*abandon)(struct drive* d);
 } state_t;

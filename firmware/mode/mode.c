@@ -68,7 +68,7 @@ void drive_trip(drive_t* d, drive_fault_t fault) {
   note(d, fault);
   d->fault = fault;
   begin(d, DRIVE_FAULT);
-  d->control.closed = false;
+  d->control.references.closed = false;
   d->request.speed = false;  // asked for before the fault
   d->control.command_rpm_q16 = 0;
   d->control.target_bpp = 0;

@@ -134,7 +134,7 @@ static void begin_saturation(drive_t* d) {
 }
 
 static void begin_settle(drive_t* d) {
-  d->control.closed = true;
+  d->control.references.closed = true;
   start_enter(d, START_SETTLE);
 }
 
@@ -154,7 +154,7 @@ static start_phase_t step_saturation(drive_t* d) {
   drive_start_t* const s = &starting;
   saturation_t* const test = &s->saturation;
   const int32_t reference_q20 = saturation_step(test, &d->position.avv.regression, &d->model);
-  d->control.reference_q20.d = reference_q20;
+  d->control.references.current_q20.d = reference_q20;
   const int16_t tick = (int16_t)((test->tick - 1) % SATURATION_SEGMENT);
   if (s->tick <= SATURATION_LENGTH)
     followed_step(&s->followed, tick, SATURATION_SEGMENT, reference_q20, d->control.measured_q20.d);
@@ -176,7 +176,7 @@ static start_phase_t step_motion(drive_t* d) {
   const bool pending = s->motion.result == POLARITY_PENDING;
   const int16_t tick = s->motion.tick;
   const int32_t reference_q20 = polarity_step(&s->motion, raw);
-  d->control.reference_q20.q = reference_q20;
+  d->control.references.current_q20.q = reference_q20;
   if (pending) followed_step(&s->followed, tick, s->motion.length, reference_q20, d->control.measured_q20.q);
   if (s->motion.result == POLARITY_PENDING || !start_has_exclusive_slot(d)) return START_GOES_ON;
   s->tries++;

@@ -13,14 +13,12 @@
 #include "firmware/start/phases.h"
 
 static void reset_control(drive_t* d) {
-  d->control.closed = false;
+  static const references_t none = {{0, 0}, 0, false};
+  d->control.references = none;
   modulator_reset(&d->modulation.state);
   field_weakening_reset(&d->control.weakening);
   d->control.ramp.value = 0;
   position_hold_release(&d->control.position_hold);
-  d->control.reference_q20.d = 0;
-  d->control.reference_q20.q = 0;
-  d->control.feed_forward_q16 = 0;
 }
 
 // False when it was refused, with a fault.
@@ -65,6 +63,8 @@ static void start_step(drive_t* d) {
   if (d->flags.invalid > 0u && !d->flags.gates_off) d->flags.invalid--;
 }
 
-static void start_estimate(drive_t* d, estimator_input_t* in) { start_phases[d->found.phase]->estimate(d, in); }
+static estimator_output_t start_estimate(drive_t* d, estimator_input_t* in) {
+  return start_phases[d->found.phase]->estimate(d, in);
+}
 
 const state_t start_state = {start_begin, start_step, start_estimate, NULL};

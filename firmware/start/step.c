@@ -59,7 +59,7 @@ start_phase_t start_at_standstill(const drive_t* d) {
 
 bool start_begin_standstill(drive_t* d) {
   d->flags.shorted = false;
-  d->control.closed = false;
+  d->control.references.closed = false;
   position_preset(d, 0, 0);
   axis_begin(&starting.axis);
   if (d->flags.gates_off) start_power(d, true);

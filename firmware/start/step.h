@@ -64,7 +64,7 @@ bool start_begin_standstill(drive_t* d);
 start_phase_t start_look(const drive_t* d);           // is the shaft to be looked at? Else as if it stood
 start_phase_t start_at_standstill(const drive_t* d);  // the shaft stands
 
-/// The start is over: the rotor is here.
+/// The start is over: the rotor is here, and no torque current is asked for.
 void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 
 #endif

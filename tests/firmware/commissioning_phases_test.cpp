@@ -39,10 +39,10 @@ TEST_F(Phases, AShaftThatShowsNoAxisFollowsTheCurrent) {
   commissioning_hold(&drive);
   EXPECT_EQ(inside::reference_dq_q20().q, 0);
   estimator_input_t in{};
-  commissioning_estimate(&drive, &in);
-  EXPECT_EQ(inside::selected().angle_bam, bam(1.4));
-  EXPECT_EQ(inside::selected().speed_bpp, 0);
-  EXPECT_EQ(inside::selected().load_accel_q8, 0);
+  const estimator_output_t in_use = commissioning_estimate(&drive, &in);
+  EXPECT_EQ(in_use.angle_bam, bam(1.4));
+  EXPECT_EQ(in_use.speed_bpp, 0);
+  EXPECT_EQ(in_use.load_accel_q8, 0);
 }
 
 // To the nearest sixth of a turn, 0.02 degrees in a period, and 600 ms in all.

@@ -48,9 +48,16 @@ class Exchange : public Drive {
     std::vector<std::uint16_t> edges(std::begin(board.frame.edge_tick), std::end(board.frame.edge_tick));
     edges.insert(edges.end(), board.frame.burst_start_tick, board.frame.burst_start_tick + 3);
     const drive_control_t& c = inside::control();
-    return {inside::state(),   inside::fault(),        inside::limits(),
-            c.reference_q20.d, c.reference_q20.q,      inside::selected().angle_bam,
-            c.command_q16.d,   c.braking_headroom_q20, edges,
+    const dq_t& wanted = inside::reference_dq_q20();
+    return {inside::state(),
+            inside::fault(),
+            inside::limits(),
+            wanted.d,
+            wanted.q,
+            inside::selected().angle_bam,
+            c.command_q16.d,
+            c.braking_headroom_q20,
+            edges,
             board.legs};
   }
 

@@ -67,13 +67,13 @@ inline auto& command_rpm_q16() { return drive.control.command_rpm_q16; }
 inline auto& current_controller() { return drive.control.current; }
 inline auto& current_dq_q20() { return drive.control.measured_q20; }
 inline auto& current_limit_q20() { return drive.control.current_limit_q20; }
-inline auto& feed_forward_q16() { return drive.control.feed_forward_q16; }
+inline auto& feed_forward_q16() { return drive.control.references.feed_forward_q16; }
 inline auto& field_weakening() { return drive.control.weakening; }
 inline auto& headroom_q20() { return drive.control.headroom_q20; }
-inline auto& loop_is_closed() { return drive.control.closed; }
+inline auto& loop_is_closed() { return drive.control.references.closed; }
 inline auto& per_torque_constant() { return drive.control.per_torque_constant; }
 inline auto& position_hold() { return drive.control.position_hold; }
-inline auto& reference_dq_q20() { return drive.control.reference_q20; }
+inline auto& reference_dq_q20() { return drive.control.references.current_q20; }
 inline auto& speed_controller() { return drive.control.speed; }
 inline auto& speed_ramp() { return drive.control.ramp; }
 inline auto& speed_ready() { return drive.control.speed_ready; }

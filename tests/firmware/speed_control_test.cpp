@@ -338,7 +338,7 @@ TEST_F(SpeedTask, EachPeriodHasItsOwnTask) {
     inside::time_ms() = kMark;
     c.weakening_q20 = kMark;
     inertia_match.ms = kMark;
-    c.reference_q20.d = kMark;
+    c.references.current_q20.d = kMark;
     c.headroom_q20 = raw(3.0, 20);
     c.braking_headroom_q20 = kMark;
     inside::schedule().period = static_cast<std::uint16_t>((k + 9) % 10);
@@ -349,7 +349,7 @@ TEST_F(SpeedTask, EachPeriodHasItsOwnTask) {
     EXPECT_EQ(c.braking_headroom_q20 != kMark, k == 0) << k;
     EXPECT_EQ(c.weakening_q20 != kMark, k == 5) << k;
     EXPECT_EQ(inertia_match.ms != kMark, k == 6) << k;
-    EXPECT_EQ(c.reference_q20.d != kMark, k == 0) << k;
+    EXPECT_EQ(c.references.current_q20.d != kMark, k == 0) << k;
   }
 }
 

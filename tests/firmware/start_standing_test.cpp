@@ -20,8 +20,9 @@ using namespace stillspin::test;
 TEST_F(StartStanding, BeginsWithNothingOfTheLastRun) {
   inside::state() = DRIVE_READY;
   drive_control_t& c = inside::control();
-  c.ramp.value = c.feed_forward_q16 = c.reference_q20.d = c.reference_q20.q = 12345;
-  c.closed = c.position_hold.holding = true;
+  references_t& r = c.references;
+  c.ramp.value = r.feed_forward_q16 = r.current_q20.d = r.current_q20.q = 12345;
+  r.closed = c.position_hold.holding = true;
   inside::missing_windows() = inside::overruns() = 3;
   inside::synchronism().debounce = 99;
   starting.tries = starting.held_back = 2;
@@ -31,8 +32,8 @@ TEST_F(StartStanding, BeginsWithNothingOfTheLastRun) {
   inside::config().sensor_mismatch_q30 = 4321;
   start_state.begin(&drive, DRIVE_RUN);
   EXPECT_EQ(inside::state(), DRIVE_START);
-  EXPECT_EQ(c.ramp.value | c.feed_forward_q16 | c.reference_q20.d | c.reference_q20.q, 0);
-  EXPECT_FALSE(c.closed);
+  EXPECT_EQ(c.ramp.value | r.feed_forward_q16 | r.current_q20.d | r.current_q20.q, 0);
+  EXPECT_FALSE(r.closed);
   EXPECT_FALSE(c.position_hold.holding);
   EXPECT_EQ(inside::missing_windows() + inside::overruns(), 0);
   EXPECT_EQ(inside::synchronism().debounce, 0);
@@ -370,7 +371,6 @@ TEST_F(StartStanding, WhatRunsGoesOnFromTheAngleAndTheSpeed) {
   use_source(POSITION_ENCODER);
   board.encoder = 1234;
   brake_release_hold.left = 9;
-  inside::reference_dq_q20().q = raw(3.0, 20);
   inside::speed_controller().current_q20 = inside::speed_controller().integral_q20 = raw(2.0, 20);
   drive_bumpless_transfer(&drive, bam(0.8), bpp(100.0));
   EXPECT_EQ(inside::selected().angle_bam, bam(0.8));
@@ -383,7 +383,6 @@ TEST_F(StartStanding, WhatRunsGoesOnFromTheAngleAndTheSpeed) {
   EXPECT_EQ(polarity_watch.axis.speed_bpp, bpp(100.0));
   EXPECT_EQ(brake_release_hold.left, 0u);
   EXPECT_EQ(inside::speed_ramp().value, bpp(100.0));
-  EXPECT_EQ(inside::reference_dq_q20().q, 0);
   EXPECT_EQ(inside::speed_controller().current_q20, 0);
 }
 

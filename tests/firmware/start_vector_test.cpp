@@ -63,12 +63,12 @@ TEST_F(StartByVector, ASourceThatRestsSeesTheVector) {
     flux_observer.observer.angle_bam = inside::observer().angle_bam = bam(2.0);
     estimator_input_t in = {};
     in.model = &inside::model();
-    if_ramp_phase.estimate(&drive, &in);
+    const estimator_output_t in_use = if_ramp_phase.estimate(&drive, &in);
     EXPECT_EQ(inside::seen().angle_bam, bam(0.3)) << source;
     EXPECT_EQ(inside::seen().speed_bpp, bpp(60.0)) << source;
     EXPECT_EQ(inside::observer().angle_bam, bam(2.0)) << "it is not asked";
     EXPECT_EQ(flux_observer.observer.angle_bam == bam(0.3), source == POSITION_FLUX_CONV) << source;
-    EXPECT_EQ(inside::selected().angle_bam, if_ramp.angle_bam + static_cast<std::uint32_t>(if_ramp.speed_bpp));
+    EXPECT_EQ(in_use.angle_bam, if_ramp.angle_bam + static_cast<std::uint32_t>(if_ramp.speed_bpp));
   }
 }
 

@@ -64,8 +64,8 @@ void any_moment(void) {
   drive.control.ramp.value = any_i32;
   drive.control.measured_q20.d = any_i32;
   drive.control.measured_q20.q = any_i32;
-  drive.control.reference_q20.d = any_i32;
-  drive.control.reference_q20.q = any_i32;
+  drive.control.references.current_q20.d = any_i32;
+  drive.control.references.current_q20.q = any_i32;
   drive.control.command_q16.d = any_i32;
   drive.control.command_q16.q = any_i32;
   drive.request.speed_rpm_q16 = any_i32;

@@ -1,4 +1,5 @@
-"""The checks of the inside of firmware/: small headers, no question for the source, no parameter in an interrupt."""
+"""The checks of the inside of firmware/: small headers, no question for the source, no parameter in an interrupt, one
+writer for what a period has."""
 
 import sys
 from pathlib import Path
@@ -10,7 +11,7 @@ from planting import plant
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
-from checks import comparisons, faces, inside, interrupt, left  # noqa: E402
+from checks import comparisons, faces, inside, interrupt, left, writers  # noqa: E402
 
 
 def including(count: int) -> str:
@@ -163,3 +164,40 @@ def test_test_that_reaches_into_the_drive_is_caught(tmp_path: Path) -> None:
     assert inside.check(tmp_path) == []
     plant(tmp_path, "tests/firmware/y.cpp", "int f() { return x; }\nint g() { return drive.state + board.drive.x; }\n")
     assert [(f.path, f.line) for f in inside.check(tmp_path)] == [("tests/firmware/y.cpp", 2)]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "  d->control.references.current_q20.q = 0;",
+        "  drive_control_t* const c = &d->control; c->references.closed = true;",
+        "  dq_t* const r = &d->control.references.current_q20;",
+        "  drive.position.selected.angle_bam += half;",
+        "  d->samples.windows[0].span_ticks = 1;",
+        "  d->schedule.slot++;",
+    ],
+)
+def test_member_of_a_period_that_somebody_else_writes_is_caught(tmp_path: Path, line: str) -> None:
+    plant(tmp_path, "firmware/board/board.c", f"void look(drive_t* d) {{\n{line}\n}}\n")
+    assert [(f.path, f.line) for f in writers.check(tmp_path)] == [("firmware/board/board.c", 2)]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "  const int32_t q = d->control.references.current_q20.q;",
+        "  const dq_t* const r = &d->control.references.current_q20;",
+        "  if (d->schedule.slot == SLOT_LOOK) d->position.seen = d->position.selected;",
+    ],
+)
+def test_member_of_a_period_that_is_read_passes(tmp_path: Path, line: str) -> None:
+    plant(tmp_path, "firmware/board/board.c", f"void look(drive_t* d) {{\n{line}\n}}\n")
+    assert writers.check(tmp_path) == []
+
+
+def test_each_writer_writes(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert writers.check(ROOT) == []
+    for member, owners in writers.WRITERS.items():
+        monkeypatch.setattr(writers, "WRITERS", {member: ("nobody",)})
+        found = {finding.path for finding in writers.check(ROOT)}
+        assert all(any(path.startswith(owner) for path in found) for owner in owners)

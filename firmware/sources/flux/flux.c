@@ -86,7 +86,7 @@ static flux_period_t period_of(const drive_t* d, bool is_full) {
   p.is_full = is_full;
   p.current_q20 = frame_fixed(d->control.measured_q20, end_bam);
   p.measured_q20 = d->control.measured_q20;
-  p.reference_q20 = d->control.reference_q20;
+  p.reference_q20 = d->control.references.current_q20;
   if (d->flags.open_loop) {
     p.measured_q20 = position_seen(d, p.measured_q20);
     p.reference_q20 = position_seen(d, p.reference_q20);
@@ -163,7 +163,7 @@ static int32_t observability_current(drive_t* d) {
       q_min(OBSERVABLE_CURRENTS * d->config.dead_time.edge_band_q20, q_shr(c->current_limit_q20, 1));
   const bool unobservable =
       d->position.blend.share_q15 == 0 && q_abs_sat(d->position.selected.speed_bpp) < flux_config.adaptation.lowest_bpp;
-  const int32_t missing_q20 = unobservable ? q_max(least_q20 - q_abs_sat(c->reference_q20.q), 0) : 0;
+  const int32_t missing_q20 = unobservable ? q_max(least_q20 - q_abs_sat(c->references.current_q20.q), 0) : 0;
   flux_observability_q20 = q_follow(flux_observability_q20, missing_q20, OBSERVABILITY_SHIFT);
   return -flux_observability_q20;
 }

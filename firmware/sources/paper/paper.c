@@ -48,7 +48,7 @@ static bool is_by_turns(const drive_t* d) {
 }
 
 static estimator_output_t step_zvv(drive_t* d, const estimator_input_t* in) {
-  const estimator_output_t out = zvv_step(&paper_zvv, &paper_config, in, d->control.reference_q20.d);
+  const estimator_output_t out = zvv_step(&paper_zvv, &paper_config, in, d->control.references.current_q20.d);
   d->position.deviation_q20 = paper_zvv.deviation_q20;
   return out;
 }

@@ -37,7 +37,7 @@ static void begin_listen(drive_t* d) {
   start_power(d, false);
   d->flags.shorted = true;
   d->flags.caught = false;
-  d->control.closed = false;
+  d->control.references.closed = false;
   start_enter(d, START_LISTEN);
 }
 
@@ -89,7 +89,7 @@ static void close_loop(drive_t* d) {
   flying_start.learnt = false;
   d->flags.shorted = false;
   flying_start.stray = 0;
-  d->control.closed = true;
+  d->control.references.closed = true;
   field_weakening_reset(&d->control.weakening);
   drive_weaken_field(d);
 }

@@ -22,7 +22,7 @@ static void begin_if_ramp(drive_t* d) {
   d->position.seen = none;
   if_start_begin(&if_ramp, 0, d->control.target_bpp < 0);
   current_controller_reset(&d->control.current);
-  d->control.closed = true;
+  d->control.references.closed = true;
   polarity_watch_end();
   if (drive_source_has(d, SOURCE_HANDS_OVER) && if_ramp_config.speed_bpp > d->config.blend.high_bpp)
     position_bumpless_transfer(d);
@@ -42,25 +42,23 @@ static bool looks_on(drive_t* d, const if_start_t* ramp) {
 }
 
 // The control uses the vector's frame.
-static void estimate_if_ramp(drive_t* d, estimator_input_t* in) {
+static estimator_output_t estimate_if_ramp(drive_t* d, estimator_input_t* in) {
   const if_start_t* const ramp = &if_ramp;
   d->position.seen = looks_on(d, ramp) ? d->source->step(d, in) : d->position.selected;
-  d->position.selected.angle_bam = ramp->angle_bam + (uint32_t)ramp->speed_bpp;
-  d->position.selected.speed_bpp = ramp->speed_bpp;
+  const estimator_output_t out = {ramp->angle_bam + (uint32_t)ramp->speed_bpp, ramp->speed_bpp, 0, 0};
+  return out;
 }
 
 // The estimators go on as they are. No watch over the polarity: a source that took the magnet for reversed would have
 // been half a turn away from the vector.
 static void take_over(drive_t* d) {
   drive_control_t* const c = &d->control;
-  const estimator_output_t seen = d->position.seen;
-  const dq_t own_q20 = position_seen(d, c->reference_q20);
-  d->position.selected = seen;
+  const dq_t own_q20 = position_seen(d, c->references.current_q20);
   position_keep(d);
   hold_end();
-  c->ramp.value = seen.speed_bpp;
-  c->reference_q20.d = 0;
-  c->reference_q20.q = own_q20.q;
+  c->ramp.value = d->position.selected.speed_bpp;
+  c->references.current_q20.d = 0;
+  c->references.current_q20.q = own_q20.q;
   speed_controller_preset(&c->speed, 0);
   current_controller_reset(&c->current);
   const drive_state_t behind = d->flags.behind;
@@ -72,8 +70,8 @@ static start_phase_t step_if_ramp(drive_t* d) {
   const estimator_output_t* const seen = &d->position.seen;
   const if_start_result_t result =
       if_start_step(&if_ramp, &if_ramp_config, d->control.command_q16, seen->angle_bam, seen->speed_bpp);
-  d->control.reference_q20.d = if_ramp.current_q20;
-  d->control.reference_q20.q = 0;
+  d->control.references.current_q20.d = if_ramp.current_q20;
+  d->control.references.current_q20.q = 0;
   if (result == IF_START_TAKEN_OVER && start_has_exclusive_slot(d)) take_over(d);
   if (result == IF_START_FAILED) drive_trip(d, FAULT_DIVERGENCE);
   return START_GOES_ON;
