@@ -13,9 +13,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Protocol, cast
-
-import numpy.typing as npt
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from stillspin import extras, scales
 from stillspin.core_board import NativeBoard
@@ -24,10 +22,13 @@ from stillspin.core_loop import NativeStepLoop, NativeStepLoops
 from stillspin.entry import Entry, Value
 from stillspin.errors import InputError, did_you_mean
 
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
 Plant = dict[str, dict[str, Value]]
 Blocks = list[tuple[int, list[int]]]
 """Words from an address on."""
-Signals = dict[str, npt.NDArray[Any]]
+Signals = dict[str, "npt.NDArray[Any]"]
 Command = tuple[float, str, float]
 LoadPoint = tuple[float, float]
 GateEdge = tuple[int, int, bool, bool]  # tick, leg, upper, lower

@@ -6,8 +6,6 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from stillspin import extras
 
 ABOUT = b"stillspin"
@@ -25,6 +23,8 @@ def arrow(columns: Mapping[str, Any], units: Mapping[str, str], about: Mapping[s
     Raises:
         InputError: pyarrow is not installed.
     """
+    import numpy as np  # noqa: PLC0415 - takes long to load, and not all need it
+
     pa = extras.need("pyarrow")
     arrays = {name: np.asarray(data) for name, data in columns.items()}
     fields = [

@@ -14,10 +14,11 @@ import pytest
 
 from stillspin import can as drive_can
 from stillspin import core
-from stillspin.board.can_plug import SlcanPlug, SocketcanPlug
+from stillspin.board.can_plug import SlcanPlug
 from stillspin.board.desk import SLICE, Desk
 from stillspin.board.pseudo_terminal import PseudoTerminal
 from stillspin.board.slcan import ERROR, OK, Adapter, Frame
+from stillspin.board.socketcan_plug import SocketcanPlug
 from stillspin.errors import InputError
 from stillspin.link.records import Record
 from stillspin.link.segments import Joiner, split

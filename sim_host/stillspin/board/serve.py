@@ -16,7 +16,7 @@ from typing import Protocol
 from rich.console import Console
 
 from stillspin.board import eeprom_file
-from stillspin.board.can_plug import CanPlug, SlcanPlug, SocketcanPlug
+from stillspin.board.can_plug import CanPlug, SlcanPlug
 from stillspin.board.desk import SLICE, Desk
 from stillspin.board.pacer import Pacer
 from stillspin.board.pseudo_terminal import DEFAULT_RATE, PseudoTerminal
@@ -25,7 +25,7 @@ from stillspin.called import called
 from stillspin.core_board import NativeBoard
 from stillspin.errors import CampaignError, InputError
 from stillspin.exit_codes import ExitCode
-from stillspin.link.can_bus import DEFAULT_BITRATE
+from stillspin.link.segments import DEFAULT_BITRATE
 
 _PAUSE = 0.05  # s of wall time; the longest sleep
 _LEAVE = 1.0  # s that the terminal has for the last line
@@ -114,16 +114,20 @@ def _take_leave(words: str, show: Show) -> None:
 
 
 def _plug_in(board: NativeBoard, options: Options) -> Desk:
-    plug: CanPlug = (
-        SocketcanPlug(board, options.socketcan)
-        if options.socketcan
-        else SlcanPlug(board, PseudoTerminal(options.can_link))
-    )
+    plug = _can_plug(board, options)
     try:
         return Desk(board, PseudoTerminal(options.link), plug)
     except InputError:
         plug.close()
         raise
+
+
+def _can_plug(board: NativeBoard, options: Options) -> CanPlug:
+    if not options.socketcan:
+        return SlcanPlug(board, PseudoTerminal(options.can_link))
+    from stillspin.board.socketcan_plug import SocketcanPlug  # noqa: PLC0415 - takes long to load, and not all need it
+
+    return SocketcanPlug(board, options.socketcan)
 
 
 @dataclass

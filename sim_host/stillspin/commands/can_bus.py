@@ -20,7 +20,8 @@ from stillspin.commands import parameter_file
 from stillspin.commands.connection import opened
 from stillspin.errors import InputError
 from stillspin.link import address
-from stillspin.link.can_bus import NODES, open_bus
+from stillspin.link.can_bus import open_bus
+from stillspin.link.segments import NODES
 from stillspin.options import number
 
 _DBC = Path(__file__).resolve().parent.parent / "can" / "stillspin.dbc"

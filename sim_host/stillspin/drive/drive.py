@@ -8,7 +8,6 @@ from stillspin.drive.acquisition import Acquisition
 from stillspin.drive.commissioning import OnProgress, Report, follow
 from stillspin.drive.protocol import Command
 from stillspin.link import address
-from stillspin.link.virtual import VirtualTransport
 
 
 class Drive(Acquisition):
@@ -36,6 +35,8 @@ class Drive(Acquisition):
             speed: multiple of real time; 0 is as fast as possible.
             seed: of the noise.
         """
+        from stillspin.link.virtual import VirtualTransport  # noqa: PLC0415 - takes long to load, and not all need it
+
         return cls(VirtualTransport(profile, changes, speed=speed, seed=seed), timeout=2.0)
 
     def commission(self, on_progress: OnProgress | None = None) -> Report:

@@ -6,8 +6,6 @@ import time
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from stillspin.drive.recording import Recording
 from stillspin.drive.stream import Sample, Stream
 from stillspin.errors import InputError
@@ -50,6 +48,8 @@ def keep(stream: Stream, duration: float, version: str) -> Log:
         sample = stream.next(_WAIT)
         if sample is not None:
             samples.append(sample)
+    import numpy as np  # noqa: PLC0415 - takes long to load, and not all need it
+
     values = np.array([sample.values for sample in samples], dtype=np.float64).reshape(-1, len(stream.signals))
     times = np.array([sample.time for sample in samples], dtype=np.float64)
     signals = {signal.name: values[:, at] for at, signal in enumerate(stream.signals)}

@@ -5,16 +5,17 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
-
-import numpy as np
-import numpy.typing as npt
+from typing import TYPE_CHECKING, Any
 
 from stillspin.drive.protocol import CONTROL_PERIOD
 from stillspin.drive.recording import Recording
 from stillspin.drive.table import Signal, Table
 from stillspin.errors import InputError, did_you_mean
 from stillspin.quantity import Range
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 MOST = 4
 DEPTH = 512
@@ -166,6 +167,8 @@ def encode(setup: Setup, table: Table) -> bytes:
 
 def decode(setup: Setup, state: ScopeState, words: Sequence[npt.NDArray[np.int16]], table: Table) -> Capture:
     """What was recorded, in users' units."""
+    import numpy as np  # noqa: PLC0415 - takes long to load, and not all need it
+
     signals, units, clipped = {}, {}, []
     for channel, raw in zip(setup.channels, words, strict=True):
         signal = table.signal(channel.signal)

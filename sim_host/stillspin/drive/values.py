@@ -5,9 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Mapping
 from dataclasses import dataclass
-
-import numpy as np
-import numpy.typing as npt
+from typing import TYPE_CHECKING
 
 from stillspin.drive.describe import Ask, unpack
 from stillspin.drive.inspection import Inspection
@@ -16,6 +14,10 @@ from stillspin.drive.requester import wait_until
 from stillspin.drive.scope import CHUNK
 from stillspin.drive.table import Parameter, Table
 from stillspin.link.errors import DriveError, RefusedError
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 _READ_MOST = 4
 """Per question: answers that are short leave room on the line for a stream."""
@@ -87,6 +89,8 @@ def read_channel(ask: Ask, channel: int, count: int, chunk: int = CHUNK) -> npt.
         if not body:
             break
         words += body
+    import numpy as np  # noqa: PLC0415 - takes long to load, and not all need it
+
     return np.frombuffer(bytes(words), dtype="<i2").astype(np.int16)
 
 

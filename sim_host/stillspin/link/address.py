@@ -12,10 +12,9 @@ from dataclasses import dataclass, field
 from urllib.parse import parse_qsl, urlsplit
 
 from stillspin.errors import InputError, did_you_mean
-from stillspin.link.can_bus import DEFAULT_BITRATE, NODES, CanTransport
+from stillspin.link.segments import DEFAULT_BITRATE, NODES
 from stillspin.link.serial_port import DEFAULT_BAUD, SerialTransport
 from stillspin.link.transport import Transport
-from stillspin.link.virtual import VirtualTransport
 from stillspin.quantity import Range
 
 _FORMS = "serial:///dev/ttyUSB0, can:slcan:/dev/ttyACM0?node=1, can:socketcan:can0?node=1 or virtual:"
@@ -70,7 +69,11 @@ def connect(text: str) -> Transport:
     if address.kind == "serial":
         return SerialTransport(address.channel, address.options["baud"])
     if address.kind == "virtual":
+        from stillspin.link.virtual import VirtualTransport  # noqa: PLC0415 - takes long to load, and not all need it
+
         return VirtualTransport(address.channel, speed=address.options["speed"])
+    from stillspin.link.can_bus import CanTransport  # noqa: PLC0415 - the same
+
     return CanTransport(address.interface, address.channel, address.options["node"], address.options["bitrate"])
 
 

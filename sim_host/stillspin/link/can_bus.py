@@ -13,13 +13,11 @@ import serial
 
 from stillspin.link.errors import LinkError, gone
 from stillspin.link.records import Record
-from stillspin.link.segments import Joiner, split
+from stillspin.link.segments import DEFAULT_BITRATE, Joiner, split
 from stillspin.link.serial_port import descriptor_of, explain
 from stillspin.link.splitter import Damaged, Item
 from stillspin.link.transport import beats_of_clock
 
-DEFAULT_BITRATE = 500_000
-NODES = range(1, 32)
 REQUEST = 0x400
 RESPONSE = 0x480
 _SEND_TIMEOUT = 0.5

@@ -10,6 +10,10 @@ from collections.abc import Iterator
 
 from stillspin.link.records import MAX_PACKED, Record, RecordError, pack, unpack
 
+DEFAULT_BITRATE = 500_000
+"""Of a bus, in bit/s."""
+NODES = range(1, 32)
+"""Numbers of drives on it."""
 FIRST = 0x80
 LAST = 0x40
 COUNT = 0x3F
