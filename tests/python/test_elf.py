@@ -1,11 +1,9 @@
 """Executables of the C28x's EABI: words, load addresses and names, and where they are not taken."""
 
-import subprocess
-import sys
-
 import pytest
 from c28x_chip import blocks, program
 from elf_files import FUNCTION, OBJECT, SEGMENT_OCTETS, UNTYPED, altered, elf
+from in_process import stillspin
 
 from stillspin.errors import InputError
 from stillspin.flash import elf as elf_files
@@ -70,9 +68,8 @@ def test_an_image_is_timed_with_its_names(file):
     code = next(index for index, block in enumerate(parts) if block.address == 0x3F4000)
     symbols = [(name, made.symbols[name.upper()], code, FUNCTION) for name in ("start", "beside", "sample")]
     image = file(elf(parts, symbols=symbols))
-    command = [sys.executable, "-m", "stillspin", "image", "time", image, "--after", "0.02", "--for", "0.002"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
-    assert done.returncode == 0, done.stderr
+    done = stillspin("image", "time", image, "--after", "0.02", "--for", "0.002")
+    assert done.exit_code == 0, done.stderr
     assert "INT1.1 sample " in done.stdout
     assert "\nbeside " in done.stdout
 

@@ -9,6 +9,7 @@ import time
 import pytest
 from c28x_chip import MILLISECOND, blocks, program
 from flash_files import coff, intel_hex
+from in_process import stillspin
 
 from stillspin import core
 from stillspin.board.image import blocks_of
@@ -125,7 +126,6 @@ def test_the_board_runs_a_file_behind_a_port(tmp_path, encode):
 def test_an_image_has_its_own_parameters(tmp_path):
     image = tmp_path / "echo.out"
     image.write_bytes(coff(file_blocks("echo")))
-    command = [sys.executable, "-m", "stillspin", "board", "--image", image, "--set", "can_timeout=1"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
-    assert done.returncode == 2
+    done = stillspin("board", "--image", image, "--set", "can_timeout=1")
+    assert done.exit_code == 2
     assert "--image" in done.stderr

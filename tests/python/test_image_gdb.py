@@ -11,6 +11,7 @@ import xml.etree.ElementTree as ET
 
 import pytest
 from c28x_chip import linked_file
+from in_process import stillspin
 
 from stillspin.errors import InputError
 from stillspin.image import gdb_target, opened
@@ -333,9 +334,6 @@ def test_what_is_no_instruction_stops_before_it_traps(tmp_path, go_on, behind):
 
 
 def test_gdb_goes_with_an_image_alone():
-    done = subprocess.run(
-        [sys.executable, "-m", "stillspin", "board", "--gdb", "0"],
-        capture_output=True, text=True, timeout=60, check=False,
-    )  # fmt: skip
-    assert done.returncode == 2
+    done = stillspin("board", "--gdb", "0")
+    assert done.exit_code == 2
     assert "--gdb" in done.stderr

@@ -1,10 +1,8 @@
 """`stillspin image inject`: non-atomic accesses and spoiled registers are found, and nothing else is."""
 
-import subprocess
-import sys
-
 import pytest
 from c28x_chip import PROGRAMS, linked_file, program
+from in_process import stillspin
 
 from stillspin.errors import CampaignError, InputError
 from stillspin.image import opened, vectors
@@ -109,19 +107,14 @@ def test_interrupts_by_ti_s_names():
 
 def test_the_command_names_the_place(tmp_path):
     image = linked_file(tmp_path, "shared")
-    command = [sys.executable, "-m", "stillspin", "image", "inject", image, "--interrupt", "INT1.7", "--after", "0.01"]
-    done = subprocess.run(
-        [*command, "--from", "torn", "--to", "whole", "--compare", "COUNT"],
-        capture_output=True, text=True, timeout=120, check=False,
-    )  # fmt: skip
-    assert done.returncode == 1, done.stderr
+    command = ["image", "inject", image, "--interrupt", "INT1.7", "--after", "0.01"]
+    done = stillspin(*command, "--from", "torn", "--to", "whole", "--compare", "COUNT")
+    assert done.exit_code == 1, done.stderr
     lines = (PROGRAMS / "shared.asm").read_text().splitlines()
     store = 1 + next(k for k, line in enumerate(lines) if "MOV     @COUNT,AL" in line)
     assert f"(shared.asm:{store})" in done.stdout
     assert "COUNT (0x8000) is 0x" in done.stdout
     assert "2 places at which" in done.stdout
-    done = subprocess.run(
-        [*command, "--from", "whole", "--to", "guard"], capture_output=True, text=True, timeout=120, check=False
-    )
-    assert done.returncode == 0
+    done = stillspin(*command, "--from", "whole", "--to", "guard")
+    assert done.exit_code == 0
     assert "each time" in done.stdout

@@ -1,12 +1,11 @@
 """Source lines: what the assembler says of its programs, what line programs of DWARF say, who names lines by them."""
 
 import struct
-import subprocess
-import sys
 
 import pytest
 from c28x_chip import PROGRAMS, linked_file
 from flash_files import coff
+from in_process import stillspin
 from test_image_time import symbol, with_symbols
 
 from stillspin.c28x import linked, timed
@@ -260,16 +259,15 @@ def test_line_numbers_without_their_function_are_left_out():
 
 
 def run_command(*words):
-    command = [sys.executable, "-m", "stillspin", "image", *words]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    return stillspin("image", *words)
 
 
 def test_image_time_says_what_lines_took(tmp_path):
     image = tmp_path / "control.out"
     made = run_command("assemble", PROGRAMS / "control.asm", "--out", image)
-    assert made.returncode == 0, made.stderr
+    assert made.exit_code == 0, made.stderr
     done = run_command("time", image, "--after", "0.02", "--for", "0.002", "--lines", "3")
-    assert done.returncode == 0, done.stderr
+    assert done.exit_code == 0, done.stderr
     rows = [line for line in done.stdout.splitlines() if line.startswith("control.asm:")]
     assert len(rows) == 3
     assert "more (--lines)" in done.stdout
@@ -282,7 +280,7 @@ def test_assembling_says_what_is_wrong_and_where(tmp_path):
     source = tmp_path / "wrong.asm"
     source.write_text(" .org 0x3F4000\nstart: NOP\n FROB AL\n")
     done = run_command("assemble", source, "--out", tmp_path / "x.out")
-    assert done.returncode == 2
+    assert done.exit_code == 2
     assert "wrong.asm, line 3" in done.stderr
     source.write_text(' .copy "wrong.asm"\n')
     assert "copies itself" in run_command("assemble", source, "--out", tmp_path / "x.out").stderr

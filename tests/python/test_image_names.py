@@ -1,13 +1,12 @@
 """Tables of symbols that are damaged: what can be read is used, and how much could not is said."""
 
 import struct
-import subprocess
-import sys
 
 import pytest
 from c28x_chip import blocks, program
 from elf_files import FUNCTION, elf
 from flash_files import coff
+from in_process import stillspin
 from test_image_time import symbol, with_symbols
 
 from stillspin.flash import names
@@ -92,19 +91,7 @@ def test_the_commands_say_it(tmp_path):
     spoilt = struct.pack("<II", 0, 0x7FFFFFFF) + entries[0][8:]
     file = tmp_path / "control.out"
     file.write_bytes(with_symbols(coff(parts), [spoilt, entries[1]], bytearray()))
-    command = [
-        sys.executable,
-        "-m",
-        "stillspin",
-        "image",
-        "time",
-        file,
-        "--after",
-        "0.02",
-        "--for",
-        "0.002",
-    ]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
-    assert done.returncode == 0, done.stderr
+    done = stillspin("image", "time", file, "--after", "0.02", "--for", "0.002")
+    assert done.exit_code == 0, done.stderr
     assert "INT1.1 sample" in done.stdout
     assert done.stdout.splitlines()[-1] == "warning: control.out: 1 symbol cannot be read: left out"

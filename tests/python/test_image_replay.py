@@ -1,12 +1,11 @@
 """`stillspin image record` and `replay`: equal inputs make equal outputs, and what does not is found and named."""
 
 import json
-import subprocess
-import sys
 from dataclasses import replace
 
 import pytest
 from c28x_chip import PROGRAMS, linked_file
+from in_process import stillspin
 
 from stillspin import core
 from stillspin.board import power
@@ -177,36 +176,35 @@ def test_a_run_of_a_scenario_is_chosen(tmp_path):
     file = tmp_path / "control.tape"
     image = linked_file(tmp_path, "control")
     done = run_command("record", file, "--image", image, "--scenario", "A10", "--run", "creep", "--for", "0.05")
-    assert done.returncode == 0, done.stderr
+    assert done.exit_code == 0, done.stderr
     assert "answers no request" in done.stdout
-    assert run_command("replay", image, file, "--seed", "5").returncode == 0
+    assert run_command("replay", image, file, "--seed", "5").exit_code == 0
     for words, says in (
         (("--scenario", "A10", "--run", "none"), "it has creep"),
         (("--run", "creep"), "--scenario"),
         (("--scenario", "A10", "--send", "0.1:x"), "leave it out"),
     ):
         done = run_command("record", file, *words)
-        assert done.returncode == 2
+        assert done.exit_code == 2
         assert says in done.stderr
 
 
 def run_command(*words):
-    command = [sys.executable, "-m", "stillspin", "image", *words]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    return stillspin("image", *words)
 
 
 def test_the_commands(tmp_path, control):
     file = tmp_path / "control.tape"
     done = run_command("record", file, "--image", control, "--for", "0.02", "--send", "0.018:@")
-    assert done.returncode == 0, done.stderr
+    assert done.exit_code == 0, done.stderr
     done = run_command("replay", control, file, "--seed", "3")
-    assert done.returncode == 0, done.stdout
+    assert done.exit_code == 0, done.stdout
     assert "the same" in done.stdout
     content = json.loads(file.read_text())
     content["writes"][-4][2] ^= 1
     file.write_text(json.dumps(content))
     done = run_command("replay", control, file)
-    assert done.returncode == 4
+    assert done.exit_code == 4
     assert "differs: recorded step" in done.stdout
     assert "EPwm1.CMPA" in done.stdout
     assert "(control.asm:" in done.stdout
@@ -224,7 +222,7 @@ def test_what_is_no_tape_is_said(tmp_path):
 
 def test_times_of_lines_are_checked(tmp_path):
     done = run_command("record", tmp_path / "x", "--send", "now:start")
-    assert done.returncode == 2
+    assert done.exit_code == 2
     assert "--send" in done.stderr
 
 

@@ -2,12 +2,11 @@
 
 import re
 import struct
-import subprocess
-import sys
 
 import pytest
 from c28x_chip import MILLISECOND, blocks, program
 from flash_files import coff, intel_hex
+from in_process import stillspin
 
 from stillspin import core
 from stillspin.c28x import timed
@@ -152,15 +151,14 @@ def test_vectors_have_ti_s_names():
 
 
 def run_command(image, *more):
-    command = [sys.executable, "-m", "stillspin", "image", "time", image, *more]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    return stillspin("image", "time", image, *more)
 
 
 def test_the_command_names_interrupts_and_functions(tmp_path):
     image = tmp_path / "control.out"
     image.write_bytes(named("control", ["start", "main", "serial", "vector", "beside", "sample"]))
     done = run_command(image, "--after", "0.02", "--for", "0.01", "--functions", "2")
-    assert done.returncode == 0, done.stderr
+    assert done.exit_code == 0, done.stderr
     lines = done.stdout.splitlines()
     cycles = re.match(r"control\.out: 0\.01 s, (\d+) cycles, ", lines[0])
     assert abs(int(cycles[1]) - 1_000_000) < 20, "the last instruction at either end may be cut or not"

@@ -1,11 +1,10 @@
 """Stops and traces of the core on the virtual board, and `stillspin image trace`."""
 
 import re
-import subprocess
-import sys
 
 import pytest
 from c28x_chip import MILLISECOND, linked_file
+from in_process import stillspin
 
 from stillspin.image import opened, trace
 
@@ -105,13 +104,12 @@ def test_the_table_of_vectors_is_looked_at(board):
 
 def test_the_command_lists_from_a_place_and_up_to_one(tmp_path):
     image = linked_file(tmp_path, "control")
-    command = [sys.executable, "-m", "stillspin", "image", "trace", image, "--after", "0.02"]
 
     def run(*more):
-        return subprocess.run([*command, *more], capture_output=True, text=True, timeout=60, check=False)
+        return stillspin("image", "trace", image, "--after", "0.02", *more)
 
     done = run("--from", "sample", "--instructions", "3")
-    assert done.returncode == 0, done.stderr
+    assert done.exit_code == 0, done.stderr
     assert "SETC SXM" in done.stdout.splitlines()[1]
     assert done.stdout.count("0x3F") == 3
     until = run("--to", "sample", "--instructions", "5").stdout.splitlines()
@@ -119,7 +117,7 @@ def test_the_command_lists_from_a_place_and_up_to_one(tmp_path):
     assert len([line for line in until if "  0x3F" in line]) == 5
     for option in ("--from", "--to"):
         missed = run(option, "main", "--within", "0.001", "--instructions", "5")
-        assert missed.returncode == 1, "it has been there before"
+        assert missed.exit_code == 1, "it has been there before"
         assert re.fullmatch(rf".*{option}: 0x3F.* main .* was not reached within 0.001 s; .*--within\n", missed.stderr)
     assert missed.stdout.count("  0x3F") == 5, "what was executed last is shown all the same"
 
@@ -128,9 +126,8 @@ def test_a_core_that_sleeps_ends_the_list(tmp_path):
     source = tmp_path / "sleeper.asm"
     source.write_text(" .org 0x3F7FF6\n LB start\n .org 0x3F4000\nstart: SETC INTM\n IDLE\nstay: B stay,UNC\n")
     image = linked_file(tmp_path, "sleeper", [source])
-    command = [sys.executable, "-m", "stillspin", "image", "trace", image, "--within", "0.001"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
-    assert done.returncode == 0, done.stderr
+    done = stillspin("image", "trace", image, "--within", "0.001")
+    assert done.exit_code == 0, done.stderr
     assert "IDLE" in done.stdout
     assert done.stdout.splitlines()[-1] == "no more instructions within 0.001 s: the core sleeps"
 

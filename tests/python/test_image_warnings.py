@@ -124,7 +124,7 @@ def test_the_board_says_it_when_it_is_switched_off(image):
 def test_a_board_in_the_loop_says_it_too(image, capsys):
     with boards.Board(None, Path(image())) as board:
         board.wait("serial")
-        time.sleep(2)  # of which the first milliseconds are enough
+        time.sleep(0.5)  # of which the first milliseconds are enough
     assert capsys.readouterr().out.startswith("warning: the boot ROM was read ")
 
 
