@@ -4,6 +4,7 @@ Its model here is of its own: Python's integers, and the answers as firmware/hil
 """
 
 import os
+import select
 import struct
 import zlib
 from types import SimpleNamespace
@@ -182,6 +183,7 @@ def through(descriptor, names):
         tag = next(tags) % 256
         os.write(descriptor, to_wire(Record(request[0], tag, request[1:])))
         while True:
+            select.select([descriptor], [], [])
             for item in splitter.feed(os.read(descriptor, 4096), 0.0):
                 if isinstance(item, Record) and item.tag == tag and item.is_answer:
                     return item.body

@@ -118,3 +118,15 @@ def test_the_command_names_the_place(tmp_path):
     done = stillspin(*command, "--from", "whole", "--to", "guard")
     assert done.exit_code == 0
     assert "each time" in done.stdout
+
+
+def test_a_stretch_that_is_too_long_says_what_to_give(tmp_path):
+    image = linked_file(tmp_path, "shared")
+    command = ["image", "inject", image, "--interrupt", "INT1.7", "--after", "0.01", "--from", "torn", "--to", "whole"]
+    done = stillspin(*command, "--most", "1")
+    assert done.exit_code == 1
+    assert "was not reached within 1 instruction; the program is at 0x" in done.stderr
+    assert "; allow more with --most" in done.stderr
+    done = stillspin(*command[:-4], "--from", "0x3F7000", "--within", "0.001")
+    assert done.exit_code == 1
+    assert "0x3F7000, the beginning, was not reached within 0.001 s; give it longer with --within" in done.stderr

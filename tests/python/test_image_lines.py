@@ -285,4 +285,6 @@ def test_assembling_says_what_is_wrong_and_where(tmp_path):
     source.write_text(' .copy "wrong.asm"\n')
     assert "copies itself" in run_command("assemble", source, "--out", tmp_path / "x.out").stderr
     source.write_text(" .org 0x3F4000\n NOP\n")
+    none = run_command("assemble", tmp_path / "none.asm", "--out", tmp_path / "x.out")
+    assert none.stderr == f"stillspin: {tmp_path / 'none.asm'}: cannot be read (No such file or directory)\n"
     assert "no label 'start'" in run_command("assemble", source, "--out", tmp_path / "x.out").stderr

@@ -246,7 +246,8 @@ def test_a_whole_program_is_shown(tmp_path):
     [
         (("--code", "0x3F5000"), "the image has nothing at 0x3F5000"),
         (("--code", "start"), "'start' is neither an address such as 0x3F4000, nor FILE:LINE, nor a name"),
-        (("--lines", "0"), "--lines"),
+        (("--code", "0x400000"), "--code: 0x400000 is out of range; 0x000000 … 0x3FFFFF"),
+        (("--lines", "0"), "--lines: 0 is out of range; 1 … 65536"),
     ],
 )
 def test_what_is_wrong_is_one_line(tmp_path, arguments, says):

@@ -121,8 +121,10 @@ class _Pass:
 def _read(file: Path) -> str:
     try:
         return file.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{file}: cannot be read ({error})") from error
+    except OSError as error:
+        raise InputError(f"{file}: cannot be read ({error.strerror})") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{file}: is no text (UTF-8); give the source of the program") from error
 
 
 def _lines(source: str, name: str, folder: Path | None) -> Iterator[tuple[Line, str]]:

@@ -18,11 +18,12 @@ from stillspin.flash.program import Program
 from stillspin.flash.sections import Section
 from stillspin.image import opened
 from stillspin.one_line_errors import OneLineErrors
-from stillspin.options import ImageArgument
+from stillspin.options import ImageArgument, whole
 
 app = typer.Typer(
     cls=OneLineErrors,
-    help="Linked images: show one; time, trace, interrupt, record and replay one on the virtual board; assemble one.",
+    help="Programs as they are linked for the chip (images): look at one; run one on the virtual board, which executes "
+    "its machine code, and say what it took and did; make one of assembly.",
     rich_markup_mode=None,
 )
 
@@ -94,7 +95,10 @@ def show(
         str,
         typer.Option("--code", metavar="PLACE", help="List the code from a name, FILE:LINE or an address on instead."),
     ] = "",
-    lines: Annotated[int, typer.Option("--lines", min=1, max=65536, help="How many lines of code to list.")] = 24,
+    lines: Annotated[
+        int,
+        typer.Option("--lines", metavar="N", parser=whole("--lines", 1, 65536), help="How many lines of code to list."),
+    ] = 24,
 ) -> None:
     """Say what an image loads where, where it runs, and how full the memories are.
 

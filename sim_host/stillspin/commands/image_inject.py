@@ -14,7 +14,16 @@ from stillspin.flash.names import Names
 from stillspin.image import inject as injection
 from stillspin.image import opened, vectors
 from stillspin.image.inject import Difference, Report, Stretch
-from stillspin.options import AfterOption, ImageArgument, MotorOption, ProfileOption, RomOption, SeedOption, number
+from stillspin.options import (
+    AfterOption,
+    ImageArgument,
+    MotorOption,
+    ProfileOption,
+    RomOption,
+    SeedOption,
+    number,
+    whole,
+)
 
 _MOST_SHOWN = 8
 
@@ -62,7 +71,11 @@ def inject(
     file: ImageArgument,
     interrupt: Annotated[
         str,
-        typer.Option("--interrupt", metavar="INTx.y", help="Which interrupt, by its line in the PIE, such as INT1.7."),
+        typer.Option(
+            "--interrupt",
+            metavar="INTx.y",
+            help="Which interrupt, by group and line of the chip's interrupt table (PIE): INT1.7 is CPU timer 0.",
+        ),
     ],
     begin: Annotated[
         str, typer.Option("--from", metavar="PLACE", help="Where the stretch begins: a name, FILE:LINE or an address.")
@@ -90,7 +103,13 @@ def inject(
         ),
     ] = 0.1,
     most: Annotated[
-        int, typer.Option("--most", min=1, max=100_000, help="Give up when the stretch has more instructions.")
+        int,
+        typer.Option(
+            "--most",
+            metavar="N",
+            parser=whole("--most", 1, 100_000),
+            help="Give up when the stretch has more instructions.",
+        ),
     ] = 2000,
     rom: RomOption = None,
     profile_name: ProfileOption = "bench",

@@ -127,7 +127,11 @@ def record(
     motor: OtherMotorOption = None,
     seed: SeedOption = 1,
 ) -> None:
-    """Record what converter, pins and encoder tell on the virtual board, and every write to the ePWM, from power-on."""
+    """Record a run from power-on: all that a program reads of its surroundings, and all that it has the gates do.
+
+    Read are the codes of the converter (ADC), pins, trip inputs and the encoder's edges; written the registers of the
+    timers that make the gates' pulses (ePWM).
+    """
     octets = _octets(send or [])
     if rom and not file:
         raise InputError(NEEDS_IMAGE)
@@ -172,9 +176,10 @@ def replay(
     motor: MotorOption = resources.DEFAULT_MOTOR,
     seed: SeedOption = 1,
 ) -> None:
-    """Give an image the inputs of a recorded run, and compare what it writes to the ePWM, bit for bit.
+    """Give an image the inputs of a recorded run, and compare what it has the gates do, bit for bit.
 
-    Exit status 4 when one differs: the first is named by step, register and source line.
+    Compared is every write to the timers of the gates' pulses (ePWM). Exit status 4 when one differs: the first is
+    named by step, register and source line.
     """
     image, tape = opened.read(file, rom), tapes.load(tape_file)
     board = opened.power_on(image, profile_name, motor, seed)

@@ -22,7 +22,7 @@ from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.image import closed_loop, opened, vectors
 from stillspin.image.opened import Image
-from stillspin.options import ImageArgument, OtherMotorOption, ProfileOption, RomOption, SeedOption, number
+from stillspin.options import ImageArgument, OtherMotorOption, ProfileOption, RomOption, SeedOption, number, whole
 from stillspin.report.progress import PhaseBar
 from stillspin.revision import revision
 from stillspin.runs import execute
@@ -200,8 +200,18 @@ def time(
             help="From when on, after power-on; in a scenario it is the end of the start procedure [default: 0].",
         ),
     ] = None,
-    most: Annotated[int, typer.Option("--functions", min=1, max=10_000, help="How many functions to list.")] = 20,
-    lines: Annotated[int, typer.Option("--lines", min=0, max=100_000, help="How many source lines to list.")] = 0,
+    most: Annotated[
+        int,
+        typer.Option(
+            "--functions", metavar="N", parser=whole("--functions", 1, 10_000), help="How many functions to list."
+        ),
+    ] = 20,
+    lines: Annotated[
+        int,
+        typer.Option(
+            "--lines", metavar="N", parser=whole("--lines", 0, 100_000), help="How many source lines to list."
+        ),
+    ] = 0,
     rom: RomOption = None,
     profile_name: ProfileOption = "bench",
     motor: OtherMotorOption = None,

@@ -10,7 +10,16 @@ from stillspin import resources
 from stillspin.errors import CampaignError
 from stillspin.image import opened
 from stillspin.image import trace as tracing
-from stillspin.options import AfterOption, ImageArgument, MotorOption, ProfileOption, RomOption, SeedOption, number
+from stillspin.options import (
+    AfterOption,
+    ImageArgument,
+    MotorOption,
+    ProfileOption,
+    RomOption,
+    SeedOption,
+    number,
+    whole,
+)
 
 
 def trace(
@@ -23,7 +32,12 @@ def trace(
     end: Annotated[
         str, typer.Option("--to", metavar="PLACE", help="List the last instructions before this place instead.")
     ] = "",
-    count: Annotated[int, typer.Option("--instructions", min=1, max=100_000, help="How many to list.")] = 40,
+    count: Annotated[
+        int,
+        typer.Option(
+            "--instructions", metavar="N", parser=whole("--instructions", 1, 100_000), help="How many to list."
+        ),
+    ] = 40,
     after: AfterOption = 0.0,
     rom: RomOption = None,
     within: Annotated[

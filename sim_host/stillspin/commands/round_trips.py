@@ -106,9 +106,9 @@ def round_trips(
     commission_first: CommissionOption = True,
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the results.")] = Path("results-trips"),
 ) -> None:
-    """From standstill to 3000 rpm and back without load, forward and backward in turn, from drawn initial angles.
+    """From standstill to 3000 rpm and back without load, from random angles of the shaft, forward and backward in turn.
 
-    The seed draws the angles, too. Exit status 1 when more trips are lost than --may-lose says.
+    The angles are those of --seed. Exit status 1 when in more trips than --may-lose the drive loses the rotor.
     """
     with junit.Report(common.junit_file, NAME, firmware) as verdicts:
         options = Options(

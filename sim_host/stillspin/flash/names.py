@@ -15,6 +15,8 @@ from stillspin.flash.debug_head import Strings
 from stillspin.flash.debug_lines import Lines, Source
 from stillspin.flash.sections import kind_of
 
+_LAST = 0x3FFFFF
+"""Address."""
 _LINES, _LINE_STRINGS, _STRINGS = ".debug_line", ".debug_line_str", ".debug_str"
 
 
@@ -40,8 +42,8 @@ class Names:
 
     def place(self, address: int) -> str:
         """An address for people: where it is, in which function, from which line."""
-        source = self.lines.at(address)
-        return f"0x{address:06X} {self.function(address)}" + (f" ({source})" if source else "")
+        there, name, source = f"0x{address:06X}", self.function(address), self.lines.at(address)
+        return there + (f" {name}" if name != there else "") + (f" ({source})" if source else "")
 
     def of_name(self, name: str) -> int | None:
         """The address of a name as it is, or of C's: COFF puts a _ in front, the EABI does not."""
@@ -63,13 +65,16 @@ class Names:
                 return places[0]
             raise InputError(f"{option}: no code comes from line {number} of {file}")
         try:
-            return int(text, 0)
+            address = int(text, 0)
         except ValueError:
             near = did_you_mean(text, self.addresses)
             raise InputError(
                 f"{option}: '{text}' is neither an address such as 0x3F4000, nor FILE:LINE, nor a name that the image "
                 f"has{near}"
             ) from None
+        if not 0 <= address <= _LAST:
+            raise InputError(f"{option}: {text} is out of range; 0x000000 … 0x{_LAST:06X}")
+        return address
 
 
 def read(file: Path) -> Names:

@@ -106,16 +106,21 @@ def inject(board: NativeBoard, stretch: Stretch, progress: Callable[[int], None]
         CampaignError: the stretch is not reached, does not end, or the interrupt is never taken.
     """
     if not opened.run_to(board, [stretch.begin], stretch.seconds):
-        raise CampaignError(f"0x{stretch.begin:06X}, the beginning, was not reached within {stretch.seconds:g} s")
+        raise CampaignError(
+            f"0x{stretch.begin:06X}, the beginning, was not reached within {stretch.seconds:g} s; give it longer with "
+            "--within"
+        )
     tried = [_try(board, stretch, first=True)]
     while len(tried) == 1 or tried[-1].address != stretch.end:
         if len(tried) > stretch.most:
             raise CampaignError(
                 f"0x{stretch.end:06X}, the end, was not reached within {counted(stretch.most, 'instruction')}; the "
-                f"program is at 0x{tried[-1].address:06X}"
+                f"program is at 0x{tried[-1].address:06X}; allow more with --most"
             )
         if not opened.step(board, stretch.seconds):
-            raise CampaignError(f"the CPU slept for {stretch.seconds:g} s within the stretch")
+            raise CampaignError(
+                f"the CPU slept for {stretch.seconds:g} s within the stretch; give it longer with --within"
+            )
         tried.append(_try(board, stretch))
         if progress:
             progress(len(tried))
