@@ -4,7 +4,9 @@ import json
 import os
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import cantools
 import pandas as pd
@@ -196,10 +198,16 @@ LEFT_OUT_REQUESTS = {
 LEFT_OUT_FAULTS = {"lab": 0, "drive": 1, "hil": 1, "minimal": 5}  # the encoder's; those of the wiring
 
 
+@cache
+def answered(edition: str) -> Any:
+    """What an edition says to all of that."""
+    return json.loads(on(edition, "-c", ASKED))
+
+
 @pytest.mark.parametrize("edition", LEFT_OUT_REQUESTS)
 def test_a_request_of_what_is_left_out_is_told_from_one_that_no_edition_knows(edition: str) -> None:
     """Every number that there can be: lab has them all, so what it does not know nobody does."""
-    lab, own = (json.loads(on(name, "-c", ASKED)) for name in ("lab", edition))
+    lab, own = answered("lab"), answered(edition)
     words = [f"not in this edition of the firmware, {edition}"]
     for asked, in_lab, left_out in zip(own[:2], lab[:2], LEFT_OUT_REQUESTS[edition], strict=True):
         assert {int(kind) for kind, (status, _) in asked.items() if status == EDITION} == left_out
@@ -273,8 +281,8 @@ built.check_board("board")
 
 def test_without_a_store_the_status_says_that_nothing_can_be_saved() -> None:
     absent, progress = 8, 100
-    assert json.loads(on("minimal", "-c", ASKED))[3] == [absent, progress, 0]
-    assert json.loads(on("drive", "-c", ASKED))[3][0] != absent
+    assert answered("minimal")[3] == [absent, progress, 0]
+    assert answered("drive")[3][0] != absent
 
 
 def test_the_client_names_the_edition_that_has_not_what_was_asked_for(tmp_path: Path) -> None:
