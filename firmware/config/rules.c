@@ -47,7 +47,7 @@ packed_text_t parameter_rule_broken(void) {
   if (p->weakening_limit > p->current_limit) return SAY_weakening_limit_must_not_exceed_current_limi;
   if (p->window_minimum < p->settle_time + SAMPLING_MIN_Q16) return SAY_window_minimum_must_be_settle_time_4;
   if (p->pulse_time / 20 * 13 < p->settle_time + SAMPLING_MIN_Q16) return SAY_0_65_pulse_time_must_be_settle;
-  if ((p->excitation == 0 || p->excitation >= 4) && drive_source_selected_has(SOURCE_BESIDE | SOURCE_AVV_FIRST))
+  if ((p->excitation == 0 || p->excitation >= 4) && drive_source_selected_has(SOURCE_ACTIVE))
     return SAY_avv_needs_two_active_vectors;
   if (p->hold_time > 0 && p->excitation != 2 && p->excitation != 3 && p->excitation != 5)
     return SAY_hold_time_needs_excitation_2_3_or;

@@ -22,18 +22,11 @@ static bool over_current(const drive_t* d) {
   return !(q_in_range(i.a, -limit, limit) && q_in_range(i.b, -limit, limit) && q_in_range(i.c, -limit, limit));
 }
 
-// Whether AVV is there to be compared with the encoder: it needs active vectors that are long enough to sample in.
-static bool encoder_beside_avv(const drive_t* d) {
-  return drive_source_has(d, SOURCE_MEASURES) && d->config.values.current_law == CURRENT_LAW_PI &&
-         d->config.values.flux_beside == 0 && d->config.values.excitation != EXCITATION_CENTRED &&
-         d->config.values.excitation < EXCITATION_LONG_ZERO;
-}
-
 // How far the two estimators are apart; 0 where there is one, or one that says itself that it knows nothing.
 static int32_t disagreement(const drive_t* d) {
   const drive_position_t* const p = &d->position;
-  const bool both = drive_source_has(d, SOURCE_BESIDE) || encoder_beside_avv(d) ||
-                    (drive_source_has(d, SOURCE_BLENDS) && p->blend.region == BLEND_BOTH);
+  const bool both =
+      drive_source_has(d, SOURCE_BESIDE) || (drive_source_has(d, SOURCE_BLENDS) && p->blend.region == BLEND_BOTH);
   if (!both || p->low.quality_q15 == 0 || p->high.quality_q15 == 0) return 0;
   return q_abs_sat(angle_diff_bam(p->low.angle_bam, p->high.angle_bam));
 }

@@ -18,7 +18,8 @@ enum {
   SOURCE_BLENDS = 32,       // two estimators, both meant to be right only between the ends of the blend
   SOURCE_BESIDE = 64,       // two estimators, both meant to be right at any speed
   SOURCE_ALTERNATES = 128,  // two estimators have the windows in turn; the blend goes by a speed from the start on
-  SOURCE_AVV_FIRST = 256    // it is AVV that looks at the windows first
+  SOURCE_AVV_FIRST = 256,   // it is AVV that looks at the windows first
+  SOURCE_ACTIVE = 512       // AVV has to see two active vectors in every period
 };
 
 /// Of the parameter `excitation`: the source says which pulses there are.

@@ -52,6 +52,12 @@ static bool is_reversed(const drive_t* d) {
          q_abs_sat(angle_diff_bam(windows_bam, encoder_bam)) / 2;
 }
 
+// Whether AVV is there to be compared with the encoder: it needs active vectors that are long enough to sample in.
+static bool avv_sees(const drive_t* d) {
+  return d->config.values.current_law == CURRENT_LAW_PI && d->config.values.flux_beside == 0 &&
+         d->config.values.excitation != EXCITATION_CENTRED && d->config.values.excitation < EXCITATION_LONG_ZERO;
+}
+
 static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
   in->frames = 0;
   tracking_observer_t* const o = &encoder.observer;
@@ -64,6 +70,7 @@ static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
   } else {
     source_step_avv(d, in);
   }
+  if (!avv_sees(d)) d->position.high.quality_q15 = 0;  // it looks on, and its angle is no reason for a fault
   d->position.low = out;
   // Behind the observer: turning the frame is no motion of the shaft.
   out.angle_bam += encoder.trim_bam;
@@ -72,4 +79,4 @@ static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
 }
 
 const position_source_t encoder_source = {
-    source_encoder, NULL, NULL, NULL, encoder_begin, is_reversed, SOURCE_MEASURES | SOURCE_SINGLE, 3};
+    source_encoder, NULL, NULL, NULL, encoder_begin, is_reversed, SOURCE_MEASURES | SOURCE_SINGLE | SOURCE_BESIDE, 3};

@@ -19,4 +19,4 @@ static estimator_output_t source_avv(drive_t* d, estimator_input_t* in) {
   return d->position.high;
 }
 
-const position_source_t avv_source = {source_avv, NULL, NULL, NULL, NULL, NULL, SOURCE_AVV_FIRST, 3};
+const position_source_t avv_source = {source_avv, NULL, NULL, NULL, NULL, NULL, SOURCE_AVV_FIRST | SOURCE_ACTIVE, 3};

@@ -33,4 +33,4 @@ static estimator_output_t source_observer_avv(drive_t* d, estimator_input_t* in)
 const position_source_t observer_source = {
     source_observer, NULL, NULL, NULL, NULL, NULL, SOURCE_SINGLE | SOURCE_OBSERVES | SOURCE_READS, 2};
 const position_source_t observer_avv_source = {
-    source_observer_avv, NULL, NULL, NULL, NULL, NULL, SOURCE_OBSERVES | SOURCE_BESIDE, 3};
+    source_observer_avv, NULL, NULL, NULL, NULL, NULL, SOURCE_OBSERVES | SOURCE_BESIDE | SOURCE_ACTIVE, 3};
