@@ -6,7 +6,8 @@
 //   delta i = k [w_r(n+1) - a w(n) - b i(n-1)],   k = alpha b / (alpha b^2 + 1)                          (53), (54)
 // Two things are added to the paper. The target w_r(n+1) is a reference trajectory that starts at the measured speed
 // and closes the distance with a time constant: with w_r = w* itself the loop has poles at z^2 - (2 - 2kb) z + (1 -
-// kb), which ring for every kb below one and amplify the estimator's noise as kb approaches it. And the load is not the
+// kb), which ring for every kb below one and amplify the estimator's noise as kb approaches it. (A time constant below
+// two steps is none: that is w* itself.) And the load is not the
 // differentiated speed of the paper's Fig. 7 but the load torque that the position observer carries as a state.
 //
 // PI: pole assignment for J s w = Kt i - B w with the damping and frequency given; integrator with conditional release.
@@ -27,7 +28,7 @@ typedef struct {
   int32_t inertia_q24;       // J, kg m^2
   int32_t step_periods;      // speed period in PWM periods, 1..100
   int32_t alpha_q8;          // weight of the predicted speed error, A^2 s^2 / rad^2, 1..100000
-  int32_t trajectory_ms_q8;  // time constant of the reference trajectory, 2..200 ms
+  int32_t trajectory_ms_q8;  // time constant of the reference trajectory, 1..200 ms
   int32_t pi_bandwidth_q8;   // natural frequency of the PI loop, rad/s, 1..200
   int32_t pi_damping_q12;    // its damping, 0.3..60
 } speed_controller_config_t;
@@ -42,7 +43,7 @@ typedef struct {
 typedef struct {
   int32_t decay_q30;     // a
   int32_t response_q8;   // b, bpp per A
-  int32_t approach_q30;  // 1 - exp(-Ts / trajectory)
+  int32_t approach_q30;  // 1 - exp(-Ts / trajectory), or 1
   speed_gains_t gains;
   speed_gains_t nominal;  // of the parameters
   int32_t current_q20;    // i(n-1) of the predictive law

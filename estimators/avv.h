@@ -35,4 +35,14 @@ bool avv_angle_is_near(const regression_t* r, const machine_model_t* m);
 
 estimator_output_t avv_step(avv_t* s, const avv_config_t* c, const estimator_input_t* in);
 
+/// 2 theta as printed, (37) to (41): of two active vectors the slopes as they are, each along its own voltage and less
+/// that under the period's zero vector, through an arc tangent. The print takes three active vectors, and a period has
+/// two: the third phase is what the three's sum, constant by (37), leaves of it. The angle is that in the middle of the
+/// period in which the windows lie. False, with nothing written, where a period has no two of them and a zero vector.
+bool avv_printed_angle(const estimator_input_t* in, uint32_t* doubled_bam);
+
+/// avv_step with that angle, for comparison; the print does not say what follows it, here the same tracking observer
+/// with the lower bandwidth does. No regression: there is nothing to learn from.
+estimator_output_t avv_printed_step(avv_t* s, const avv_config_t* c, const estimator_input_t* in);
+
 #endif

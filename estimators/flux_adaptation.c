@@ -1,5 +1,7 @@
 #include "estimators/flux_adaptation.h"
 
+#include "hal/qmath/qcall.h"
+
 #define ONE_Q30 1073741824L
 #define SHARE_LEAST_Q24 4194304L  // as flux_machine.h has it
 #define SHARE_MOST_Q24 20971520L
@@ -19,8 +21,8 @@ void flux_adaptation_reset(flux_adaptation_t* s) {
 
 // L_q i_q / T over psi_q / T, less 1: by how much the secant inductance has fallen at a point of the map.
 static int32_t fallen_q24(const machine_model_t* m, int32_t iq_q20, int32_t psi_q_q16) {
-  const int32_t straight_q16 = q_mul_sat(q_mul_sat(m->lq_q30, m->periods_per_second, 14), iq_q20, 20);
-  return q_sub_sat(q_div(straight_q16, psi_q_q16, 24), FLUX_ONE_Q24);
+  const int32_t straight_q16 = qc_mul_sat(qc_mul_sat(m->lq_q30, m->periods_per_second, 14), iq_q20, 20);
+  return qc_sub_sat(q_div(straight_q16, psi_q_q16, 24), FLUX_ONE_Q24);
 }
 
 int32_t flux_adaptation_identify_q24(const machine_model_t* m) {
@@ -29,7 +31,8 @@ int32_t flux_adaptation_identify_q24(const machine_model_t* m) {
   for (int32_t k = 1; k <= MACHINE_MAP_SEGMENTS; k++) {
     const int32_t iq_q20 = q_div(k * 32768L, m->map.per_segment_q26, 31);
     const machine_point_t* const p = &m->map.points[k];
-    const int32_t torque_q16 = q_mul_sat(q_mul_sat(m->torque_q24, iq_q20, 28), q_div(p->psi_d_q16, m->emf_q16, 24), 24);
+    const int32_t torque_q16 =
+        qc_mul_sat(qc_mul_sat(m->torque_q24, iq_q20, 28), q_div(p->psi_d_q16, m->emf_q16, 24), 24);
     product += q_mul64(fallen_q24(m, iq_q20, p->psi_q_q16), torque_q16, 16);
     square += q_mul64(torque_q16, torque_q16, 16);
   }
@@ -46,13 +49,13 @@ bool flux_adaptation_change_q24(const flux_machine_t* f, const flux_vectors_t* v
   const int32_t length_q24 = q_hypot(v->flux_q24.alpha, v->flux_q24.beta);
   if (length_q24 == 0) return false;
   const q_inverse_t per_length = q_invert(length_q24);
-  const int32_t along_q24 = q_over(frame_dot_q24(v->flux_q24, v->current_q24), per_length, 24);
-  const int32_t across_q24 = q_over(frame_cross_q24(v->flux_q24, v->current_q24), per_length, 24);
+  const int32_t along_q24 = qc_over(frame_dot_q24(v->flux_q24, v->current_q24), per_length, 24);
+  const int32_t across_q24 = qc_over(frame_cross_q24(v->flux_q24, v->current_q24), per_length, 24);
   if (q_abs_sat(across_q24) < least_current_q24) return false;
-  const int32_t d_q24 = q_mul_sat(current_q20.d, f->ld_per_psi_q30, 26);
-  const int32_t q_q24 = q_mul_sat(current_q20.q, f->lq_per_psi_q30, 26);
-  const int32_t seen_q24 = q_mul_sat(q_sub_sat(length_q24, along_q24), q_div(q_q24, across_q24, 24), 24);
-  *change_q24 = q_sub_sat(seen_q24, q_add_sat(FLUX_ONE_Q24, d_q24));
+  const int32_t d_q24 = qc_mul_sat(current_q20.d, f->ld_per_psi_q30, 26);
+  const int32_t q_q24 = qc_mul_sat(current_q20.q, f->lq_per_psi_q30, 26);
+  const int32_t seen_q24 = qc_mul_sat(qc_sub_sat(length_q24, along_q24), q_div(q_q24, across_q24, 24), 24);
+  *change_q24 = qc_sub_sat(seen_q24, qc_add_sat(FLUX_ONE_Q24, d_q24));
   return true;
 }
 

@@ -12,9 +12,9 @@ PARAMETER(174, slice_time, US, 16, 2, 500, 2000, 500, STOPPED,
           "interval of the hysteresis' decisions, a whole part of 100 us")
 
 // The paper's ZVV
-PARAMETER(310, zvv_terms, NONE, 0, 0, 0, 31, 31, ALWAYS,
-          "of the paper's scheme, added up: 1 rotation in D, 2 integral alone fed back, 4 drops in D, 8 load, 16 long "
-          "zero vectors by turns in the blend")
+PARAMETER(310, paper_terms, NONE, 0, 0, 0, 127, 127, STOPPED,
+          "paper's scheme: 1 rotation in D, 2 integral fed back, 4 drops, 8 load, 16 turns in blend, "
+          "32 trajectory, 64 residuals in AVV")
 
 // Position by the stator flux
 PARAMETER(300, flux_cutoff, RAD_PER_S, 8, 1, 20, 1500, 20, STOPPED,

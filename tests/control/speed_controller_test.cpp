@@ -164,7 +164,7 @@ TEST(SpeedController, RangesEndWhereTheyAreSaidTo) {
       {&speed_controller_config_t::inertia_q24, 168, 16777216},
       {&speed_controller_config_t::step_periods, 1, 100},
       {&speed_controller_config_t::alpha_q8, 256, 25600000},
-      {&speed_controller_config_t::trajectory_ms_q8, 512, 51200},
+      {&speed_controller_config_t::trajectory_ms_q8, 256, 51200},
       {&speed_controller_config_t::pi_bandwidth_q8, 256, 51200},
       {&speed_controller_config_t::pi_damping_q12, 1228, 245760},
   };
@@ -247,8 +247,10 @@ TEST(SpeedController, OneStepOfThePredictiveLaw) {
   }
 }
 
-// A trajectory as fast as the controller's own step would be overshot by it.
-TEST(SpeedController, RefusesATrajectoryFasterThanItsStep) {
+// A trajectory as fast as the controller's own step would be overshot by it; then the command is the target, as
+// printed: (53) to (55) with w_r = w*.
+TEST(SpeedController, WithoutATrajectoryTheCommandIsTheTarget) {
+  Random random(43);
   Design d;
   d.trajectory = 2.5e-3;
   for (const int periods : {10, 20}) {  // 1 ms and 2 ms
@@ -256,7 +258,23 @@ TEST(SpeedController, RefusesATrajectoryFasterThanItsStep) {
     const machine_model_t m = model_of(d.motor);
     const speed_controller_config_t c = d.config();
     speed_controller_t s;
-    EXPECT_EQ(speed_controller_init(&s, &c, &m), periods == 10);
+    ASSERT_TRUE(speed_controller_init(&s, &c, &m));
+    EXPECT_EQ(s.approach_q30 == raw(1.0, 30), periods == 20);
+  }
+  const double b = d.response();
+  const double k = d.alpha * b / (d.alpha * b * b + 1.0);
+  for (int n = 0; n < 2000; ++n) {
+    const machine_model_t m = model_of(d.motor);
+    const speed_controller_config_t c = d.config();
+    speed_controller_t s;
+    ASSERT_TRUE(speed_controller_init(&s, &c, &m));
+    const double before = random.between(-10.0, 10.0), w = random.between(-300.0, 300.0);
+    const double next = w + random.between(-20.0, 20.0);
+    speed_controller_preset(&s, raw(before, 20));
+    const auto to_bpp = [&](double mechanical) { return raw(mechanical * d.bpp_per_rad_s(), 0); };
+    const speed_controller_input_t in = {to_bpp(next), 0, to_bpp(w), 0, raw(-1000.0, 20), raw(1000.0, 20)};
+    const double expected = before + k * (next - d.decay() * w - b * before);
+    ASSERT_NEAR(real(speed_controller_step(&s, SPEED_PREDICTIVE, &in), 20), expected, 0.06) << n;
   }
 }
 

@@ -104,9 +104,9 @@ TEST_F(Console, DidYouMean) {
 TEST_F(Console, WhatTheEditionHasNotIsNamedWithIt) {
   const struct {
     const char *name, *feature;
-  } names[] = {{"flux_low", "sources/flux"},   {"load_angle", "sources/flux"},      {"can_node", "can"},
-               {"wiring", "start/flying"},     {"if_speed", "start/if_start"},      {"speed_limit", "drive"},
-               {"zvv_terms", "sources/paper"}, {"encoder_trim", "sources/encoder"}, {"speed", "drive"}};
+  } names[] = {{"flux_low", "sources/flux"},     {"load_angle", "sources/flux"},      {"can_node", "can"},
+               {"wiring", "start/flying"},       {"if_speed", "start/if_start"},      {"speed_limit", "drive"},
+               {"paper_terms", "sources/paper"}, {"encoder_trim", "sources/encoder"}, {"speed", "drive"}};
   for (const auto& n : names) {
     const std::string left_out = std::string("'") + n.name + "' is not in this edition of the firmware, " +
                                  edition_name + ": see 'Editions' in the book\r\n";

@@ -207,15 +207,31 @@ TEST_F(Units, ThePapersObservers) {
   parameters.avv_bandwidth_long = raw(270.0, 8);
   parameters.zvv_proportional = raw(7.0, 8);
   parameters.zvv_integral = raw(11.0, 8);
-  parameters.zvv_terms = 5;
+  parameters.paper_terms = 5;
   const drive_config_t& c = made();
   expect_near_share(real(c.avv.bandwidth_short_q30, 30), 130.0 * kPeriod, 1e-6);
   expect_near_share(real(c.avv.bandwidth_long_q30, 30), 270.0 * kPeriod, 1e-6);
   expect_near_share(real(paper_config.kp_q30, 30), 7.0 * kPeriod, 1e-5);
   expect_near_share(real(paper_config.ki_q40, 40), 11.0 * kPeriod * kPeriod, 1e-4);
   EXPECT_EQ(paper_config.terms, 5);
+  EXPECT_GT(c.speed.trajectory_ms_q8, 512) << "another source's";
   parameters.avv_bandwidth_long = raw(90.0, 8);
   EXPECT_EQ(made().avv.bandwidth_long_q30, made().avv.bandwidth_short_q30) << "never slower with more to see";
+}
+
+// One step: none. The target is the command itself.
+TEST_F(Units, ThePapersTarget) {
+  NEEDS("sources/paper");
+  parameters.position_source = POSITION_PAPER;
+  parameters.id_low_speed = raw(8.0, 20);
+  for (const bool has_trajectory : {true, false}) {
+    parameters.paper_terms = has_trajectory ? 127 : 127 - 32;
+    const drive_config_t& c = made();
+    EXPECT_EQ(c.speed.trajectory_ms_q8, has_trajectory ? parameters.speed_trajectory : raw(1.0, 8));
+    speed_controller_t s;
+    ASSERT_TRUE(speed_controller_init(&s, &c.speed, &c.nameplate));
+    EXPECT_EQ(s.approach_q30 == raw(1.0, 30), !has_trajectory);
+  }
 }
 
 // Variances go with the square.

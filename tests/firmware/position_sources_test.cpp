@@ -318,10 +318,27 @@ TEST_F(Sources, ThePapersLayoutGoesByTurnsInTheBlend) {
   EXPECT_EQ(long_zeros(80, BLEND_BOTH, 0.5), "zezeezezez");
   EXPECT_EQ(long_zeros(101, BLEND_HIGH, 0.1), "zezeezezez") << "still mixed";
   EXPECT_EQ(long_zeros(101, BLEND_HIGH, 0.0), "eeeeeeeeee");
-  parameters.zvv_terms = 15;
+  parameters.paper_terms = 127 - 16;
   ASSERT_TRUE(drive_config_load(&inside::config()));
   EXPECT_EQ(long_zeros(44, BLEND_LOW, 1.0), "zzzzzzzzzz");
   EXPECT_EQ(long_zeros(80, BLEND_BOTH, 0.5), "eeeeeeeeee");
+}
+
+// Of AVV as printed nothing is regressed, and it has the angle all the same.
+TEST_F(Sources, AvvAsPrintedWhereItIsAskedFor) {
+  NEEDS("sources/paper");
+  for (const bool printed : {false, true}) {
+    run_with(POSITION_PAPER);
+    if (printed) {
+      parameters.paper_terms = 127 - 64;
+      ASSERT_TRUE(drive_config_load(&inside::config()));
+    }
+    blend(BLEND_HIGH, 0.0);
+    inside::selected().speed_bpp = bpp_of(200);
+    see_machine(kHere);
+    estimate();
+    EXPECT_EQ(inside::avv().regression.information > 0, !printed);
+  }
 }
 
 // By turns each has the windows that were made for it, and goes on meanwhile with what it knows.

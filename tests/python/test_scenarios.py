@@ -294,7 +294,7 @@ def test_the_papers_scheme_brings_a_rotor_through_its_transition_and_back(
     transition, steady = errors("--set", "adc.noise=1.2")
     assert 0.3 < transition < 8.0
     assert 0.3 < steady < 4.0
-    blind = stillspin(*words, "--set", "adc.noise=1.2", "--set", "zvv_terms=15")
+    blind = stillspin(*words, "--set", "adc.noise=1.2", "--set", "paper_terms=111")
     assert "broken off: the shaft turned at" in blind.stdout + blind.stderr
 
 

@@ -138,7 +138,7 @@ DEFECTS = (
         "flux",
         "flux_adaptation_change_q24",
         "estimators/flux_adaptation.c",
-        "q_sub_sat(length_q24, along_q24)",
+        "qc_sub_sat(length_q24, along_q24)",
         "length_q24 - along_q24",
     ),
     Defect("start", "polarity_step", "estimators/polarity.c", "qc_add_sat(s->response_bam, m", "(s->response_bam + m"),

@@ -56,8 +56,8 @@ static packed_text_t make(drive_config_t* c) {
   if (is_selected) narrow_band(&c->dead_time);
   flux_observer_config_t* const f = &made;
   f->method = (flux_method_t)(is_selected ? selected : FLUX_CONV);
-  f->cutoff_q30 = q_mul(p->flux_cutoff, CONFIG_PER_PERIOD_Q20, 20);
-  f->bandwidth_q30 = q_mul(p->flux_bandwidth, CONFIG_PER_PERIOD_Q20, 20);
+  f->cutoff_q30 = qc_mul(p->flux_cutoff, CONFIG_PER_PERIOD_Q20, 20);
+  f->bandwidth_q30 = qc_mul(p->flux_bandwidth, CONFIG_PER_PERIOD_Q20, 20);
   f->is_plain = (p->flux_plain & PAPER_LOW_PASS) != 0;
   f->is_printed = (p->flux_plain & PAPER_PRINT) != 0;
   // Without dead time every voltage is known.

@@ -12,8 +12,13 @@
 
 #define PER_PERIOD2_Q18 11258999L  // rad/s^2 (Q8) to rad per period^2 (Q40)
 #define AMPERE_Q20 1048576L
-#define LONG_ZERO_BY_TURNS 16u     // of zvv_terms, beside those of zvv.h
+#define NO_TRAJECTORY_MS_Q8 256L   // one step: the target is the command
 #define ZVV_PERIODS_OF_MS 0x02A5u  // whose windows it has then: 0, 2, 5, 7, 9
+
+// Of paper_terms, beside those of zvv.h.
+#define LONG_ZERO_BY_TURNS 16u
+#define TRAJECTORY 32u     // not the command itself as the target (53)
+#define AVV_RESIDUALS 64u  // not the slopes' differences and an arc tangent (37) to (41)
 
 zvv_t paper_zvv;
 zvv_config_t paper_config;
@@ -23,12 +28,13 @@ static zvv_config_t made;
 void paper_reset(void) { clear(&paper_zvv, sizeof paper_zvv); }
 
 static packed_text_t make(drive_config_t* c) {
-  (void)c;
   const parameters_t* const p = &parameters;
-  made.kp_q30 = q_mul(p->zvv_proportional, CONFIG_PER_PERIOD_Q20, 20);
-  made.ki_q40 = q_mul(p->zvv_integral, PER_PERIOD2_Q18, 18);
-  made.terms = (uint16_t)p->zvv_terms;
-  const bool lacks_current = drive_source_selected_has(SOURCE_ALTERNATES) && qc_abs_sat(p->id_low_speed) < AMPERE_Q20;
+  made.kp_q30 = qc_mul(p->zvv_proportional, CONFIG_PER_PERIOD_Q20, 20);
+  made.ki_q40 = qc_mul(p->zvv_integral, PER_PERIOD2_Q18, 18);
+  made.terms = (uint16_t)p->paper_terms;
+  if (!drive_source_selected_has(SOURCE_ALTERNATES)) return PACKED_NONE;
+  if ((made.terms & TRAJECTORY) == 0u) c->speed.trajectory_ms_q8 = NO_TRAJECTORY_MS_Q8;
+  const bool lacks_current = qc_abs_sat(p->id_low_speed) < AMPERE_Q20;
   return lacks_current ? SAY_position_source_1_needs_id_low_speed : PACKED_NONE;
 }
 
@@ -47,10 +53,17 @@ static bool is_by_turns(const drive_t* d) {
          q_abs_sat(d->position.selected.speed_bpp) >= enter_bpp(d);
 }
 
-static estimator_output_t step_zvv(drive_t* d, const estimator_input_t* in) {
-  const estimator_output_t out = zvv_step(&paper_zvv, &paper_config, in, d->control.references.current_q20.d);
+static void step_zvv(drive_t* d, const estimator_input_t* in) {
+  d->position.low = zvv_step(&paper_zvv, &paper_config, in, d->control.references.current_q20.d);
   d->position.deviation_q20 = paper_zvv.deviation_q20;
-  return out;
+}
+
+static void step_avv(drive_t* d, const estimator_input_t* in) {
+  if ((paper_config.terms & AVV_RESIDUALS) != 0u) {
+    source_step_avv(d, in);
+  } else {
+    d->position.high = avv_printed_step(&d->position.avv, &d->config.avv, in);
+  }
 }
 
 // Above the blend nobody asks ZVV.
@@ -69,11 +82,11 @@ static void step_alternately(drive_t* d, estimator_input_t* in) {
   const uint16_t count = in->window_count;
   const bool of_zvv = is_of_zvv(d);
   if (of_zvv) in->window_count = 0;
-  source_step_avv(d, in);
+  step_avv(d, in);
   if (of_zvv) {
     in->window_count = count;
     in->frames = 0;
-    p->low = step_zvv(d, in);
+    step_zvv(d, in);
   } else {
     zvv_wait(&paper_zvv);
     p->low.angle_bam = paper_zvv.angle_bam;
@@ -84,11 +97,11 @@ static void step_alternately(drive_t* d, estimator_input_t* in) {
 static estimator_output_t source_paper(drive_t* d, estimator_input_t* in) {
   drive_position_t* const p = &d->position;
   if (position_low_alone(d) && !is_by_turns(d)) {
-    p->low = step_zvv(d, in);
+    step_zvv(d, in);
     p->high = p->low;
     avv_preset(&p->avv, p->low.angle_bam, p->low.speed_bpp, p->low.load_accel_q8);
   } else if (avv_alone(d)) {
-    source_step_avv(d, in);
+    step_avv(d, in);
     p->low = p->high;
     zvv_preset(&paper_zvv, p->high.angle_bam, p->high.speed_bpp, p->high.load_accel_q8);
   } else {
