@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import time
@@ -125,3 +126,15 @@ def test_line_gives_all_it_has(terminal):
     lines = terminal.say("list")
     assert len(lines) > 60
     assert lines == terminal.say("list")
+
+
+def test_an_answer_that_nobody_reads_ends_the_command(link):
+    """`console -c status | head -1`: the lines come in another thread than the one that the command ends in."""
+    read, write = os.pipe()
+    os.close(read)
+    command = [sys.executable, "-m", "stillspin", "console", "--drive", str(link), "-c", "status"]
+    begin = time.monotonic()
+    done = subprocess.run(command, stdout=write, stderr=subprocess.PIPE, text=True, timeout=60, check=False)
+    os.close(write)
+    assert (done.returncode, done.stderr) == (141, "")
+    assert time.monotonic() - begin < _PATIENCE / 2

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import queue
 import sys
-import threading
 import time
 from collections.abc import Iterable
+from contextlib import suppress
 from typing import Annotated
 
 import typer
@@ -77,21 +78,17 @@ def _refusals(drive: Drive) -> int:
 def say(drive: Drive, current: Session, line: str) -> None:
     """Send a line and print what the drive answers."""
     transcript = Transcript()
-    heard = threading.Event()
-
-    def take(octets: bytes) -> None:
-        for text in transcript.feed(octets):
-            print(text, flush=True)
-        heard.set()
-
+    heard: queue.SimpleQueue[bytes] = queue.SimpleQueue()
     transcript.expect(line)
-    with drive.link.listening(text=take):
+    with drive.link.listening(text=heard.put):  # printed here: what goes wrong with it ends the command
         current.send(line)
         end = time.monotonic() + _ANSWER
-        if not wait_until(lambda: heard.is_set() or drive.link.lost is not None, _ECHO):
+        if not wait_until(lambda: not heard.empty() or drive.link.lost is not None, _ECHO):
             raise NoAnswerError(f"no answer to '{line}' from the console on {drive.link.transport.name}")
-        while not transcript.answered and heard.wait(max(0.0, end - time.monotonic())):
-            heard.clear()
+        with suppress(queue.Empty):
+            while not transcript.answered:
+                for text in transcript.feed(heard.get(timeout=max(0.0, end - time.monotonic()))):
+                    print(text, flush=True)
     if drive.link.lost:
         raise drive.link.lost
     if transcript.rest:
