@@ -117,7 +117,7 @@ def tree(tmp_path: Path) -> Path:
         "hal/boards",
         "sim_host/motors",
         "sim_host/profiles",
-        "firmware/dictionary",
+        "firmware",
     ):
         shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copy(ROOT / "README.md", tmp_path / "README.md")
@@ -143,6 +143,22 @@ def test_every_parameter_has_its_place_on_the_page() -> None:
     headings = [line.removeprefix("### ") for line in lines if line.startswith("### ")]
     assert headings == [parameter.name for parameter in parameters.parameters(ROOT)]
     assert len(headings) > 130
+
+
+def test_a_parameter_that_not_every_edition_has_says_which_have() -> None:
+    """Of a feature that `lab` alone has, of one that `minimal` leaves out, and of none."""
+    within = parameters.editions(ROOT)
+    assert within["170"] == ["lab"]
+    assert within["150"] == ["lab", "drive", "hil"]
+    assert "1" not in within
+    page = (ROOT / "docs/parameters.md").read_text(encoding="utf-8")
+    said = {
+        part.partition("\n")[0]: re.findall(r"^- editions: (.+)$", part, re.MULTILINE)
+        for part in page.split("\n### ")[1:]
+    }
+    assert said["flying_start"] == ["`lab`, `drive`, `hil`"]
+    assert said["pole_pairs"] == []
+    assert sum(map(len, said.values())) == len(within)
 
 
 def test_a_parameter_that_is_on_no_page_fails_the_check(tree: Path) -> None:

@@ -1,9 +1,6 @@
 """The editions of the firmware on the virtual board: what they do is what lab does, what they have not they refuse."""
 
 import json
-import os
-import subprocess
-import sys
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -11,6 +8,7 @@ from typing import Any
 import cantools
 import pandas as pd
 import pytest
+from by_edition import DESK, on
 from desk import board
 from own_edition import LOADED, ROOT, linked
 
@@ -27,18 +25,6 @@ AS_IN = {"drive": (), "minimal": ("--set", "flying_start=0", "--set", "wiring_ch
 PLANT = {"torque", "i_a", "i_b", "i_c", "v_dc", "load_torque", "told_angle", "told_cross", "told_speed"}
 LAST_BIT = 1e-6  # some times that of the record's numbers, which have 24 bits
 SCENARIOS = ("A10", "A16", "A18b")
-
-
-def on(edition: str, *command: str, expected: int = 0) -> str:
-    done = subprocess.run(
-        [sys.executable, *command],
-        env={**os.environ, "STILLSPIN_EDITION": edition},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == expected, done.stdout + done.stderr
-    return done.stdout + done.stderr
 
 
 def recorded(edition: str, scenario: str, where: Path, *options: str) -> dict[str, pd.DataFrame]:
@@ -112,15 +98,6 @@ def test_without_console_and_link_the_drive_runs_as_ever(where: Path, by_lab: pd
     quiet = where / "quiet.txt"
     quiet.write_text("drive\nsources/observer\nstart\nstart/flying\nboard\nstore\nscope\n", encoding="utf-8")
     as_lab(played(linked(quiet), where / "quiet.parquet"), by_lab)
-
-
-DESK = """
-import sys
-sys.path.insert(0, sys.argv[1])
-from stillspin import core
-core.load()
-from function_desk import Desk
-"""
 
 
 @pytest.mark.parametrize("edition", ["lab", "drive", "hil", "minimal"])
@@ -327,84 +304,3 @@ with virtual_ask() as ask:
     said = on("drive", "-c", code).split()
     assert {"(edition", "drive,"} <= set(said)
     assert said[-6:] == ["True", "False", "True", "True", "True", "False"]
-
-
-# Switched on with what its memory holds; lines that are typed, and what is answered.
-SWITCHED_ON = """
-memory = Path(sys.argv[2])
-desk = Desk({}, wait=0)
-if memory.exists():
-    desk.board.eeprom = memory.read_bytes()
-desk.wait(200)
-for line in sys.argv[3:]:
-    print(desk.type(line, 500).replace(line, "", 1).strip("> \\r\\n"))
-memory.write_bytes(desk.board.eeprom)
-"""
-SAVED = "the values have been saved"
-IN_FORCE = "the saved values are in force"
-
-
-def switch_on(edition: str, memory: Path, *lines: str) -> list[str]:
-    said = on(
-        edition, "-c", f"from pathlib import Path{DESK}{SWITCHED_ON}", str(Path(__file__).parent), str(memory), *lines
-    )
-    return said.splitlines()
-
-
-def store_of(edition: str, memory: Path) -> str:
-    """What the status says of it at power-on."""
-    return next(line for line in switch_on(edition, memory, "status") if line.startswith("store"))
-
-
-def has(edition: str, memory: Path, **values: str) -> bool:
-    """Whether a drive that is switched on with the memory has these values."""
-    said = switch_on(edition, memory, *(f"get {name}" for name in values))
-    starts = [f"{name} = {value}" for name, value in values.items()]
-    return all(any(line.startswith(start) for line in said) for start in starts)
-
-
-@pytest.fixture
-def memory(tmp_path: Path) -> Path:
-    """The EEPROM that is moved from board to board; lab has saved in it."""
-    file = tmp_path / "eeprom"
-    lines = ("set flux_low 123", "set can_node 5", "set speed_ramp 500", "save")
-    assert switch_on("lab", file, *lines)[-1] == SAVED
-    return file
-
-
-@pytest.mark.parametrize("edition", ["drive", "hil"])
-def test_a_save_of_a_smaller_edition_keeps_what_it_has_not(edition: str, memory: Path) -> None:
-    assert IN_FORCE in store_of(edition, memory)
-    assert has(edition, memory, can_node="5", speed_ramp="500")
-    assert switch_on(edition, memory, "set speed_ramp 600", "save")[-1] == SAVED
-    assert IN_FORCE in store_of(edition, memory), "and no other firmware's"
-    assert switch_on(edition, memory, "set speed_ramp 700", "save")[-1] == SAVED, "into the other slot"
-    assert IN_FORCE in store_of("lab", memory)
-    assert has("lab", memory, flux_low="123.0", can_node="5", speed_ramp="700")
-
-
-def test_a_larger_edition_has_defaults_for_what_a_smaller_one_did_not_save(tmp_path: Path) -> None:
-    memory = tmp_path / "eeprom"
-    assert switch_on("drive", memory, "set speed_ramp 600", "save")[-1] == SAVED
-    assert "values saved by another firmware are in force" in store_of("lab", memory)
-    assert has("lab", memory, flux_low="350.0", speed_ramp="600")
-    assert switch_on("lab", memory, "save")[-1] == SAVED
-    assert IN_FORCE in store_of("lab", memory)
-    assert IN_FORCE in store_of("drive", memory)
-
-
-def test_an_edition_without_a_store_does_not_touch_the_memory(memory: Path) -> None:
-    kept = memory.read_bytes()
-    said = switch_on("minimal", memory, "set speed_ramp 600", "save", "load", "defaults")
-    for name in ("save", "load", "defaults"):
-        assert f"'{name}' is not in this edition of the firmware, minimal: see 'Editions' in the book" in said
-    assert memory.read_bytes() == kept
-    assert has("lab", memory, flux_low="123.0", can_node="5", speed_ramp="500")
-
-
-def test_of_what_was_saved_an_edition_refuses_the_source_that_it_has_not_and_no_more(memory: Path) -> None:
-    assert switch_on("lab", memory, "set position_source 8", "save")[-1] == SAVED
-    assert "values saved by another firmware are in force" in store_of("drive", memory)
-    assert "; 1 refused, now at their default: position_source" in switch_on("drive", memory, "load")[-1]
-    assert has("drive", memory, position_source="4", can_node="5", speed_ramp="500")
-    assert has("lab", memory, position_source="8", flux_low="123.0", can_node="5", speed_ramp="500")

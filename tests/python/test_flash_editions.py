@@ -8,9 +8,9 @@ from pathlib import Path
 
 import flash_files as make
 import pytest
+from by_edition import SAVED, has, switch_on
 from desk import needs_board
 from flash_bench import KERNEL, flash_of, nothing
-from test_editions import SAVED, has, switch_on
 
 from stillspin.flash.files import DriveImage, drive_image
 from stillspin.flash.program import Block

@@ -1,4 +1,4 @@
-"""The reference page of all parameters, from parameter_list.h and what docs/what_you_see.toml says of them."""
+"""The reference page of all parameters, from their list, the editions' and what docs/what_you_see.toml says of them."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import compose
 from board_table import read
 from pack_text import rows, whole
 
@@ -17,6 +18,7 @@ LIST, UNITS, SEEN = (
     "docs/what_you_see.toml",
 )
 BOARD = "hal/boards/bench.h"
+EDITIONS = "firmware/editions"
 ACCESS = {"STOPPED": "may change only while the power stage is off", "ALWAYS": "may change at any time"}
 WHO = {
     "you": "for you to tune",
@@ -57,6 +59,16 @@ def parameters(root: Path) -> Iterator[Parameter]:
             yield Parameter(title, number, name, units[unit], least, most, default, access, meaning)
 
 
+def editions(root: Path) -> dict[str, list[str]]:
+    """Of a feature's parameters, by their numbers: the editions that have them, the largest first."""
+    lists = [compose.read_edition(path.stem, root) for path in sorted((root / EDITIONS).glob("*.txt"))]
+    found: dict[str, list[str]] = {}
+    for edition in sorted(lists, key=lambda each: -len(each.features)):
+        for number in (number for feature in edition.features for number in feature.parameters):
+            found.setdefault(str(number), []).append(edition.name)
+    return found
+
+
 def _written(raw: str, decimals: int) -> str:
     return f"{int(raw) / 10**decimals:.{decimals}f}"
 
@@ -75,9 +87,12 @@ def page(root: Path) -> str:
     known, about = list(parameters(root)), seen(root)
     _compare({each.name for each in known}, about)
     groups = list(dict.fromkeys(each.group for each in known))
+    within = editions(root)
     # Numbered, so that no group's anchor is a parameter's name.
     return "\n".join(
-        line for k, group in enumerate(groups, 1) for line in (f"## {k}. {group}\n", *_group(group, known, about))
+        line
+        for k, group in enumerate(groups, 1)
+        for line in (f"## {k}. {group}\n", *_group(group, known, about, within))
     )
 
 
@@ -91,13 +106,18 @@ def _compare(known: set[str], about: dict[str, dict[str, str]]) -> None:
             raise LookupError(f"{SEEN}: {name} needs who ({', '.join(WHO)}), and for you also see")
 
 
-def _group(group: str, known: list[Parameter], about: dict[str, dict[str, str]]) -> Iterator[str]:
+def _group(
+    group: str, known: list[Parameter], about: dict[str, dict[str, str]], within: dict[str, list[str]]
+) -> Iterator[str]:
     for each in (parameter for parameter in known if parameter.group == group):
         entry = about[each.name]
         unit = f" {each.unit}" if each.unit else ""
         yield f"### {each.name}\n"
         yield f"{each.meaning[0].upper()}{each.meaning[1:]}.\n"
         yield f"- {each.least} … {each.most}{unit}, default {each.default}{unit}; number {each.number}"
-        yield f"- {ACCESS[each.access]}; {WHO[entry['who']]}\n"
+        yield f"- {ACCESS[each.access]}; {WHO[entry['who']]}"
+        if each.number in within:
+            yield f"- editions: {', '.join(f'`{name}`' for name in within[each.number])}"
+        yield ""
         if "see" in entry:
             yield f"**What you see:** {entry['see'].strip()}\n"
