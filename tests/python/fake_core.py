@@ -114,6 +114,8 @@ _PARAMETERS = [
     (43, "window_maximum", "us", 2, 5.0, 40.0, 30.0, "ALWAYS", "longest extended vector"),
     (45, "settle_time", "us", 2, 4.0, 25.0, 10.5, "ALWAYS", "from an edge to the first sample"),
     (60, "position_source", "", 0, 0.0, 8.0, 4.0, "STOPPED", "where the angle comes from"),
+    (61, "blend_low", "rpm", 1, 5.0, 1000.0, 60.0, "STOPPED", "speed below which the low-speed estimator is used"),
+    (62, "blend_high", "rpm", 1, 6.0, 2000.0, 100.0, "STOPPED", "speed above which AVV is used"),
     (66, "observer_noise", "mA", 1, 1.0, 1000.0, 100.0, "ALWAYS", "rms error of a current difference"),
     (67, "observer_load_rate", "Nm", 2, 0.01, 100.0, 0.6, "ALWAYS", "load change per 10 ms"),
     (75, "observer_load_quiet", "Nm", 2, 0.01, 100.0, 0.05, "ALWAYS", "load change per 10 ms at a crawl"),
