@@ -191,6 +191,11 @@ def test_the_vector_follows_from_the_nameplate():
             "current_divider 2; current_bandwidth = 2600: at most 2080 rad/s with current_divider = 2",
         ),
         (
+            ("inductance_d = 11e-3", "inductance_d = 0.15e-3"),
+            "drive's rules",
+            "inductances, map, speed_limit; inductance_d = 0.15: at least",
+        ),
+        (
             ("current_limit = 5.0", "current_limit = 19.0\ncurrent_bandwidth = 2600"),
             "current loop",
             "lower current_bandwidth to 2573 rad/s",

@@ -10,6 +10,12 @@ from stillspin import core
 from stillspin.entry import Entry
 
 _HALVINGS = 40
+_TOGETHER = "machine's parameters"
+_MACHINE = (
+    *("pole_pairs", "stator_resistance", "inductance_d", "inductance_q", "magnet_flux"),
+    *("inertia", "map_current", "speed_limit"),
+)
+"""What the rule that speaks of all of the machine's parameters may mean; its words name quantities."""
 
 
 def conflict(native: core.NativeCore, parameters: Mapping[str, float]) -> str:
@@ -26,13 +32,17 @@ def ways_out(
 ) -> list[str]:
     """For each parameter that a broken rule names, up to where it may go or from where on, with the others as they are.
 
+    Of all of the machine's parameters together, those that alone would mend it.
+
     Args:
         native: the drive.
         known: its parameters.
         parameters: their values, the default of those that are not there.
         broken: the rule in words.
     """
-    named = [name for name in dict.fromkeys(re.findall(r"[a-z][a-z0-9_]+", broken)) if name in known]
+    together = _TOGETHER in broken
+    words = _MACHINE if together else re.findall(r"[a-z][a-z0-9_]+", broken)
+    named = [name for name in dict.fromkeys(words) if name in known]
     told = {name: float(parameters.get(name, known[name].default)) for name in named}
     found = []
     for name in named:
@@ -42,7 +52,8 @@ def ways_out(
 
         bound = _bound(known[name], told[name], said)
         if bound:
-            others = [f"{other} = {told[other]:g} {known[other].unit}".rstrip() for other in named if other != name]
+            rest = [] if together else [other for other in named if other != name]
+            others = [f"{other} = {told[other]:g} {known[other].unit}".rstrip() for other in rest]
             found.append(f"{bound}{' with ' if others else ''}{', '.join(others)}")
     return found
 
