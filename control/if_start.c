@@ -60,19 +60,22 @@ static void step_vector(if_start_t* s, const if_start_config_t* c) {
   s->vector_bam += (uint32_t)s->speed_bpp;
 }
 
-// The EMF along its own mean direction: to first order that is the rotor's speed alone, whatever the lag. Near
-// standstill the direction is that of no lag.
-static int32_t emf_along_q16(const if_start_t* s, const if_start_config_t* c, dq_t emf_q16) {
+// The EMF's own mean direction: along it is, to first order, the rotor's speed alone, whatever the lag. Near standstill
+// it is that of no lag.
+void if_start_renew(if_start_t* s, const if_start_config_t* c) {
   const int32_t d = s->backward ? -s->mean_q16.d : s->mean_q16.d;
   const int32_t q = qc_add_sat(s->backward ? -s->mean_q16.q : s->mean_q16.q, c->least_q16);
-  return q_div(q_mul_add_sat(d, emf_q16.d, q, emf_q16.q, 20), q_hypot(d, q), 20);
+  const int32_t length = q_hypot(d, q);
+  s->per_emf_q4.d = qc_mul(q_div(d, length, 30), c->per_emf_q4, 30);
+  s->per_emf_q4.q = qc_mul(q_div(q, length, 30), c->per_emf_q4, 30);
+  s->drop_q16 = qc_mul_sat(c->resistance_q24, s->current_q20, 28);
 }
 
 static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
-  const dq_t emf_q16 = {qc_sub_sat(voltage_q16.d, qc_mul_sat(c->resistance_q24, s->current_q20, 28)), voltage_q16.q};
+  const dq_t emf_q16 = {qc_sub_sat(voltage_q16.d, s->drop_q16), voltage_q16.q};
   s->mean_q16.d = q_follow(s->mean_q16.d, emf_q16.d, MEAN_SHIFT);
   s->mean_q16.q = q_follow(s->mean_q16.q, emf_q16.q, MEAN_SHIFT);
-  const int32_t seen = qc_mul_sat(emf_along_q16(s, c, emf_q16), c->per_emf_q4, 20);
+  const int32_t seen = q_mul_add_sat(s->per_emf_q4.d, emf_q16.d, s->per_emf_q4.q, emf_q16.q, 20);
   s->rotor_bpp = q_follow(s->rotor_bpp, seen, c->filter_shift);
   s->mean_bpp = q_follow(s->mean_bpp, s->rotor_bpp, MEAN_SHIFT);
   const int32_t fast = qc_sub_sat(s->rotor_bpp, s->mean_bpp);

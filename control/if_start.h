@@ -48,6 +48,8 @@ typedef struct {
   uint32_t angle_bam;      // of the frame to control in
   int32_t current_q20;     // i_d to ask for
   dq_t mean_q16;           // EMF, V, in the frame
+  dq_t per_emf_q4;         // bpp of the rotor per V of EMF along and across
+  int32_t drop_q16;        // at the resistance, V
   int32_t rotor_bpp;       // speed of the rotor by the EMF, filtered
   int32_t mean_bpp;        // its mean
   int32_t agreed, waited;  // periods
@@ -64,6 +66,9 @@ void if_start_begin(if_start_t* s, uint32_t angle_bam, bool backward);
 static inline bool if_start_is_up(const if_start_t* s, const if_start_config_t* c) {
   return q_abs_sat(s->speed_bpp) >= c->speed_bpp;
 }
+
+/// What changes slowly: once in a millisecond. Before the first time no EMF is looked at.
+void if_start_renew(if_start_t* s, const if_start_config_t* c);
 
 /// One period. voltage: command in the last one, V; seen: angle and speed of the source.
 if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16, uint32_t seen_bam,

@@ -130,7 +130,7 @@ bool deviation_observer_update_is_urgent(const deviation_observer_t* s) {
 }
 
 bool deviation_observer_is_due(const deviation_observer_t* s) {
-  return s->load_is_new || s->gathered.periods >= PERIODS_DUE || deviation_observer_update_is_urgent(s);
+  return s->load_is_new || s->gathered.periods >= PERIODS_DUE;
 }
 
 // A load that steps is not waited with for long, nor is what it does to the covariance in the 11 ms behind it.

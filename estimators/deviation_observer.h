@@ -92,9 +92,10 @@ void deviation_observer_preset(deviation_observer_t* s, uint32_t angle_bam, int3
 /// the load's doing, and not taken for one that it had before.
 void deviation_observer_stands(deviation_observer_t* s);
 
-/// True when the covariance should be renewed in one of the next periods; while the angle is known to 5 degrees.
+/// True when the covariance should be renewed in one of the next periods, be it urgent or not.
 bool deviation_observer_is_due(const deviation_observer_t* s);
-/// True when the next windows may well make it renew the covariance, asked or not.
+/// True when the next windows may well make it renew the covariance, asked or not; so while the angle is not known to 5
+/// degrees.
 bool deviation_observer_update_is_urgent(const deviation_observer_t* s);
 bool deviation_observer_is_sure(const deviation_observer_t* s);
 

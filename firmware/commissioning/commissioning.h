@@ -27,17 +27,19 @@
 #define SPIN_STATIONS 3u
 #define SPIN_RAMPS 2u
 
-/// One level of the DC staircase. Sums over periods and over windows; currents and voltages Q20, the sag V^2 Q12.
+/// One level of the DC staircase. Sums over periods, windows and pairs of them; currents and voltages Q20, the sag V^2
+/// Q12.
 typedef struct {
   int64_t current, factor, command;  // per period
   int64_t window_current, window_factor, residual, sag;
-  int32_t periods, windows;
+  int32_t periods, windows, pairs;
   int32_t link_q16;
 } staircase_level_t;
 
 typedef struct {
   staircase_level_t level[STAIRCASE_LEVELS];
   uint16_t index;
+  uint16_t turn;  // period of those in which the sums take turns
   int32_t tick;
   int32_t most_q20;
   dead_time_config_t one_volt;  // the devices, if their drop were that
@@ -77,6 +79,7 @@ typedef struct {
 typedef struct {
   spin_station_t station[SPIN_STATIONS];
   spin_ramp_t ramp[SPIN_RAMPS];
+  bool begun, arrived;
   uint16_t leg;
   int32_t tick;
 } spin_t;

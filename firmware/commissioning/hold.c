@@ -10,6 +10,7 @@
 #include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
+#include "firmware/start/phases.h"
 #include "hal/qmath/qcall.h"
 
 #define STIFFNESS_Q30 38655L   // (60 rad/s * 100 us)^2
@@ -31,8 +32,7 @@ void commissioning_hold(drive_t* d) {
   const int32_t command_q8 =
       qc_sub_sat(qc_mul_sat(error_bam, STIFFNESS_Q30, 22), qc_mul_sat(p->speed_bpp, DAMPING_Q30, 22));
   const int32_t torque_q20 = qc_mul_sat(qc_add_sat(command_q8, p->load_accel_q8), d->model.torque_per_accel_q24, 20);
-  const int32_t current =
-      q_div(torque_q20, machine_torque_constant_q24(&d->model, d->control.references.current_q20.d), 24);
+  const int32_t current = qc_over(torque_q20, d->control.per_torque_constant, 24);
   const int32_t limit = commissioning.uniform ? 0 : d->config.values.current_limit / 4;
   d->control.references.current_q20.q = q_clamp(current, -limit, limit);
 }
@@ -49,13 +49,14 @@ bool commissioning_align(drive_t* d) {
   const int32_t left = angle_diff_bam(c->goal_bam, c->target_bam);
   c->target_bam += (uint32_t)q_clamp(left, -TURN_STEP_BAM, TURN_STEP_BAM);
   commissioning_hold(d);
-  if (c->tick < SETTLE_PERIODS) return false;
+  if (c->tick < SETTLE_PERIODS || !start_has_exclusive_slot(d)) return false;
   c->model = d->model;
   machine_model_move(&c->model, 0);
   return true;
 }
 
 void commissioning_add_still(const drive_t* d) {
+  if (d->schedule.task == TASK_JUDGE) return;  // has the torque constant to make
   deviation_t first;
   deviation_t second;
   if (commissioning_pair(d, &first, &second)) tensor_add(&commissioning.unsaturated, &first, &second);
@@ -83,12 +84,24 @@ static bool opposite(const estimator_window_t* a, const estimator_window_t* b) {
          qc_abs_sat(a->voltage_q19.beta + b->voltage_q19.beta) < apart_q19;
 }
 
-bool commissioning_pair(const drive_t* d, deviation_t* first, deviation_t* second) {
+bool commissioning_has_pair(const drive_t* d) {
   const estimator_window_t* const w = d->samples.windows;
-  if (d->samples.count != 2u || !opposite(&w[0], &w[1])) return false;
-  const int32_t w_q30 = machine_speed_rad_q30(d->position.selected.speed_bpp);
-  const deviation_model_t at = deviation_model(&commissioning.model, w_q30);
-  *first = deviation_of(&at, &w[0], &d->samples.frames[0]);
-  *second = deviation_of(&at, &w[1], &d->samples.frames[1]);
+  return d->samples.count == 2u && opposite(&w[0], &w[1]);
+}
+
+static deviation_model_t model_now(const drive_t* d) {
+  return deviation_model(&commissioning.model, machine_speed_rad_q30(d->position.selected.speed_bpp));
+}
+
+deviation_t commissioning_window(const drive_t* d, uint16_t k) {
+  const deviation_model_t at = model_now(d);
+  return deviation_of(&at, &d->samples.windows[k], &d->samples.frames[k]);
+}
+
+bool commissioning_pair(const drive_t* d, deviation_t* first, deviation_t* second) {
+  if (!commissioning_has_pair(d)) return false;
+  const deviation_model_t at = model_now(d);
+  *first = deviation_of(&at, &d->samples.windows[0], &d->samples.frames[0]);
+  *second = deviation_of(&at, &d->samples.windows[1], &d->samples.frames[1]);
   return true;
 }

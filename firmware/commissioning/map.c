@@ -173,10 +173,12 @@ bool commissioning_map(drive_t* d) {
   move_on(m);
   commissioning_hold(d);
   if (m->tick == length && interlock_is_warm()) return false;
-  // The last part of a pause, at rest, is the map's point without current.
-  if (m->tick > length - STILL_PERIODS) commissioning_add_still(d);
-  m->tick = qc_add_sat(m->tick, 1);
-  if (m->tick <= length) return false;
+  if (m->tick <= length) {
+    // The last part of a pause, at rest, is the map's point without current.
+    if (m->tick > length - STILL_PERIODS) commissioning_add_still(d);
+    m->tick = qc_add_sat(m->tick, 1);
+    return false;
+  }
   if (level_complete(m)) {
     m->level++;
     m->train = 0;

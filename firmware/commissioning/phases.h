@@ -19,8 +19,11 @@ void commissioning_set_d(drive_t* d, int32_t level_q20);  // i_d reference, with
 void commissioning_add_still(const drive_t* d);
 /// Angle and speed while the shaft is held (commissioning/hold.c).
 estimator_output_t commissioning_estimate(drive_t* d, estimator_input_t* in);
-/// The period's two opposite windows against the model, in the frame that they were turned into; false when there are
-/// none.
+/// Whether the period has two windows under opposite vectors.
+bool commissioning_has_pair(const drive_t* d);
+/// One of them (0, 1) against the model, in the frame that it was turned into.
+deviation_t commissioning_window(const drive_t* d, uint16_t k);
+/// Both; false when there are none.
 bool commissioning_pair(const drive_t* d, deviation_t* first, deviation_t* second);
 
 #endif

@@ -16,7 +16,7 @@
 #define SETTLE_PERIODS 4000
 #define STATION_PERIODS 10000
 #define STILL_PERIODS 3000
-#define RAMP_PERIODS 3000  // for the whole speed
+#define RAMP_MS 300  // for the whole speed
 
 typedef enum { LEG_FIRST = 0, LEG_UP = 1, LEG_DOWN = 2, LEG_STOP = 3 } leg_t;
 
@@ -54,16 +54,19 @@ static void begin(drive_t* d) {
     drive_bumpless_transfer(d, d->position.selected.angle_bam, 0);
     d->control.references.current_q20.q = 0;
   }
+  commissioning.spin.begun = true;
+  d->periods = 0;  // as at the beginning of a run: the observer knows as little
   d->flags.spins = true;
   d->flags.frozen = false;
   d->control.target_bpp = d->control.ramp.value;
 }
 
-// Moves the speed reference towards the leg's; true when it is there. The drive's own ramp may be slower still.
+// Once in a millisecond: moves the speed reference towards the leg's; true when it is there. The
+// drive's own ramp may be slower still.
 static bool approach(drive_t* d) {
   const int32_t high = qc_mul_sat(target_rpm_q16((uint16_t)LEG_UP), d->config.bpp_per_rpm_q8, 24);
   const int32_t goal = qc_mul_sat(target_rpm_q16(commissioning.spin.leg), d->config.bpp_per_rpm_q8, 24);
-  const int32_t step = high / RAMP_PERIODS;
+  const int32_t step = high / RAMP_MS;
   int32_t* const target = &d->control.target_bpp;
   *target = q_clamp(goal, qc_sub_sat(*target, step), qc_add_sat(*target, step));
   return *target == goal && d->control.ramp.value == goal;
@@ -89,21 +92,24 @@ static bool hand_back(drive_t* d) {
 
 bool commissioning_spin(drive_t* d) {
   spin_t* const s = &commissioning.spin;
-  // Two things that are long, in a period each.
+  // Each thing that is long has a period for itself.
   if (commissioning.tick == 0) {
     clear(s, sizeof *s);
     if (commissioning.uniform) start_by_vector(d);
     return false;
   }
-  if (commissioning.tick == 1) begin(d);
+  if (!s->begun) {
+    if (start_has_exclusive_slot(d)) begin(d);
+    return false;
+  }
   if (!d->flags.spins) return hand_back(d);
-  const bool arrived = approach(d);
+  if (d->schedule.task == TASK_FIELD) s->arrived = approach(d);
   if (s->leg >= (uint16_t)LEG_STOP) {
     if (commissioning.uniform) {
       commissioning.phase = COMMISSIONING_MAP;  // which wants a shaft that is held
       return true;
     }
-    s->tick = qc_add_sat(s->tick, arrived ? 1 : 0);
+    s->tick = qc_add_sat(s->tick, s->arrived ? 1 : 0);
     // The background level comes first.
     if (s->tick > STILL_PERIODS && start_has_exclusive_slot(d)) (void)hand_back(d);
     return false;
@@ -111,9 +117,10 @@ bool commissioning_spin(drive_t* d) {
   const bool settling = s->tick < SETTLE_PERIODS;
   if (settling && s->leg != (uint16_t)LEG_FIRST) add_ramp(d, &s->ramp[s->leg - 1u]);
   if (!settling) add_station(d, &s->station[s->leg]);
-  s->tick = qc_add_sat(s->tick, arrived ? 1 : 0);
+  s->tick = qc_add_sat(s->tick, s->arrived ? 1 : 0);
   if (s->tick < SETTLE_PERIODS + STATION_PERIODS) return false;
   s->leg++;
   s->tick = 0;
+  s->arrived = false;
   return false;
 }

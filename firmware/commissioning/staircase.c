@@ -16,7 +16,6 @@
 // without an overload: with the machine cool, a quarter of what the overload's time constant bears. Resistance of
 // winding and of devices cannot be told apart this way: the devices' is kept as it was given.
 
-#include "firmware/base/clear.h"
 #include "firmware/board/functions.h"
 #include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
@@ -26,7 +25,9 @@
 
 #define SIDE (STAIRCASE_LEVELS / 2u)
 #define SETTLE_PERIODS 600
-#define LEVEL_PERIODS 8400  // a multiple of the six periods in which the excitation comes round
+#define TURN_PERIODS 6u  // in which the excitation comes round
+#define TURNS 3u
+#define LEVEL_PERIODS 8406  // a multiple of the turns'
 
 // Peak to peak on the d-axis: two thirds of the link for the length of a pulse.
 static int32_t ripple_q20(const drive_t* d) {
@@ -67,7 +68,7 @@ static void add_period(const drive_t* d, staircase_level_t* l, rotation_t r) {
 
 // Difference of the link between the middles of the two windows, from that between their ends, times the voltage along
 // d: what the evaluation divides by the link is a voltage along d.
-static int32_t sag_q12(const drive_t* d, const deviation_t w[2]) {
+static void add_sag(const drive_t* d, staircase_level_t* l, rotation_t r) {
   const estimator_window_t* const e = d->samples.windows;
   const svpwm_window_t* const p = modulation_sampled(&d->modulation)->windows;
   const sampling_config_t* const c = &d->config.modulator.sampling;
@@ -77,19 +78,46 @@ static int32_t sag_q12(const drive_t* d, const deviation_t w[2]) {
   const int32_t ends = middles + (e[0].span_ticks + e[1].span_ticks) / 2;
   const int32_t share_q15 = (middles - length) * (int32_t)32768 / q_max(ends - length, 1);
   const int32_t at_ends_q16 = d->samples.link_end_q16[0] - d->samples.link_end_q16[1];
-  return qc_mul_sat(qc_mul(at_ends_q16, share_q15, 15), w[0].voltage_q16.d / 2 - w[1].voltage_q16.d / 2, 20);
+  const ab_t quarter_q16 = {q_shr(e[0].voltage_q19.alpha - e[1].voltage_q19.alpha, 5),
+                          q_shr(e[0].voltage_q19.beta - e[1].voltage_q19.beta, 5)};
+  q_gather(&l->sag, qc_mul_sat(qc_mul(at_ends_q16, share_q15, 15), frame_park(quarter_q16, r).d, 20));
+  l->pairs = qc_add_sat(l->pairs, 1);
 }
 
-static void add_windows(const drive_t* d, staircase_level_t* l, rotation_t r) {
-  deviation_t w[2] = {{{0, 0}, {0, 0}, {0, 0}}, {{0, 0}, {0, 0}, {0, 0}}};
-  if (!commissioning_pair(d, &w[0], &w[1])) return;
-  for (uint16_t k = 0; k < 2u; k++) {
-    q_gather(&l->window_current, w[k].current_q20.d);
-    q_gather(&l->window_factor, factor_q20(d->samples.windows[k].current_q20, r));
-    q_gather(&l->residual, w[k].residual_q20.d);
-    l->windows = qc_add_sat(l->windows, 1);
+static void add_window(const drive_t* d, staircase_level_t* l, rotation_t r, uint16_t k) {
+  const deviation_t w = commissioning_window(d, k);
+  q_gather(&l->window_current, w.current_q20.d);
+  q_gather(&l->window_factor, factor_q20(d->samples.windows[k].current_q20, r));
+  q_gather(&l->residual, w.residual_q20.d);
+  l->windows = qc_add_sat(l->windows, 1);
+}
+
+// Beside the angle a period has time for one of the sums. By turns of as many periods as the excitation comes round in
+// each of them is made of the same patterns.
+static void add_one(const drive_t* d, staircase_t* s) {
+  staircase_level_t* const l = &s->level[s->index];
+  const rotation_t r = frame_rotation(d->position.selected.angle_bam);
+  s->turn = (s->turn + 1u < TURNS * TURN_PERIODS) ? (uint16_t)(s->turn + 1u) : 0u;
+  const bool pair = commissioning_has_pair(d);
+  if (s->turn < TURN_PERIODS) {
+    add_period(d, l, r);
+    if (pair) add_sag(d, l, r);
+  } else if (pair) {
+    add_window(d, l, r, (uint16_t)(s->turn / TURN_PERIODS - 1u));
   }
-  q_gather(&l->sag, sag_q12(d, w));
+}
+
+static void empty(staircase_level_t* l) {
+  l->current = 0;
+  l->factor = 0;
+  l->command = 0;
+  l->window_current = 0;
+  l->window_factor = 0;
+  l->residual = 0;
+  l->sag = 0;
+  l->periods = 0;
+  l->windows = 0;
+  l->pairs = 0;
 }
 
 bool commissioning_climb(drive_t* d) {
@@ -97,12 +125,14 @@ bool commissioning_climb(drive_t* d) {
   staircase_t* const s = &c->staircase;
   if (c->tick == 0) {
     s->index = 0;
+    s->turn = 0;
     s->tick = 0;
     s->most_q20 = bearable_q20();
     s->one_volt = d->config.dead_time;
     s->one_volt.drop_q16 = 65536L;
     dead_time_design(&s->one_volt);
     tensor_reset(&c->unsaturated);
+    return false;
   }
   commissioning_hold(d);
   if (s->index >= STAIRCASE_LEVELS) {
@@ -118,13 +148,9 @@ bool commissioning_climb(drive_t* d) {
   }
   commissioning_set_d(d, level_q20(d, s->index));
   staircase_level_t* const l = &s->level[s->index];
-  if (s->tick == 0) clear(l, sizeof *l);
+  if (s->tick == 0) empty(l);
   s->tick = qc_add_sat(s->tick, 1);
-  if (s->tick > SETTLE_PERIODS) {
-    const rotation_t r = frame_rotation(d->position.selected.angle_bam);
-    add_period(d, l, r);
-    add_windows(d, l, r);
-  }
+  if (s->tick > SETTLE_PERIODS) add_one(d, s);
   if (s->tick < SETTLE_PERIODS + LEVEL_PERIODS) return false;
   l->link_q16 = d->samples.link_q16;
   s->index++;

@@ -61,6 +61,7 @@ static void measure_current(drive_t* d, const estimator_output_t* first) {
   const dq_t mean_q20 = {less_ripple_q20(sum.d, q_mul_hi(d->model.yd_q30, ripple_q16.d), per_count_q30),
                          less_ripple_q20(sum.q, q_mul_hi(d->model.yq_q30, ripple_q16.q), per_count_q30)};
   d->control.measured_q20 = mean_q20;
+  d->position.seen_q20 = mean_q20;
   if (first == selected || first->angle_bam == selected->angle_bam) return;
   const dq_t moved_q20 = frame_moved(mean_q20, middle_of(selected) - middle_bam);
   d->control.measured_q20.d = q_limit(moved_q20.d, DRIVE_CURRENT_END_Q20);
@@ -106,7 +107,7 @@ void drive_estimate(drive_t* d) {
   // While the polarity is open the sign of the torque is, too. A source that looks on is told what its own angle makes
   // of the current, as later.
   dq_t seen_q20 = d->control.measured_q20;
-  if (open_loop) seen_q20 = position_seen(d, seen_q20);
+  if (open_loop) seen_q20 = (single && count > 0u) ? d->position.seen_q20 : position_seen(d, seen_q20);
   in.torque_accel_q8 = starting ? 0 : q_mul_sat(machine_torque_q16(&d->model, seen_q20), d->model.accel_q12, 20);
   d->position.torque_accel_q8 = in.torque_accel_q8;
   inertia_match_add(&inertia_match, in.torque_accel_q8);

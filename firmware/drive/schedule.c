@@ -36,6 +36,9 @@ static bool take_urgent(drive_t* d, bool observes) {
 // In the first millisecond of a run how much the windows will tell is not known yet.
 static bool is_young(const drive_t* d) { return d->periods < DRIVE_PERIODS_PER_MS; }
 
+// The first look of an observer is a long one.
+static bool is_new(const drive_t* d) { return !d->position.observer.is_sensitive; }
+
 static void take_slot(schedule_t* s) {
   s->waited = 0;
   s->last = (uint16_t)((s->last + 1u) % SCHEDULE_SLOTS);
@@ -65,7 +68,13 @@ static bool has_room(const drive_t* d) {
   const schedule_t* const s = &d->schedule;
   const bool is_long = s->task == TASK_SPEED || s->task == TASK_FIELD;
   if (is_long && is_beside_flux(d)) return false;
-  return !s->update_urgent || s->renews || !(is_long || s->judges || is_young(d));
+  const bool of_model = s->slot == SLOT_OPERATING_POINT || s->slot == SLOT_LOOK;
+  return !s->update_urgent || s->renews || !(is_long || s->judges || is_young(d) || (of_model && is_new(d)));
+}
+
+// A shaft that is caught wants its field weakened before it counts as one that turns.
+static bool is_beside_field(const drive_t* d) {
+  return d->flags.caught && !d->schedule.turning && d->schedule.task == TASK_FIELD;
 }
 
 static void begin(schedule_t* s) {
@@ -94,5 +103,5 @@ void schedule_next(drive_t* d) {
     s->renews = s->task == TASK_RENEW;
     s->judges = is_judgement(s->task) && !s->unsure && !is_young(d) && d->state != DRIVE_START;
   }
-  s->skips = s->exclusive || (observes && !has_room(d));
+  s->skips = s->exclusive || (observes && !has_room(d)) || is_beside_field(d);
 }

@@ -39,7 +39,7 @@ static void refer_field(drive_t* d) {
     least = 0;
   }
   c->references.current_q20.d =
-      q_clamp(q_add_sat(q_min(c->weakening_q20, least), bias), -c->current_limit_q20, c->current_limit_q20);
+      q_clamp(qc_add_sat(q_min(c->weakening_q20, least), bias), -c->current_limit_q20, c->current_limit_q20);
   d->limits &= ~(int32_t)LIMIT_WEAKENING;
   if (c->weakening_q20 < 0) d->limits |= LIMIT_WEAKENING;
 }
@@ -53,9 +53,9 @@ void drive_weaken_field(drive_t* d) {
 // has it too, so it is taken off here.
 static int32_t load_current(const drive_t* d) {
   const int32_t speed = d->position.selected.speed_bpp;
-  const int32_t load_q20 = q_mul_sat(d->position.selected.load_accel_q8, d->model.torque_per_accel_q24, 20);
-  const int32_t friction_q20 = q_mul_sat(speed, d->config.friction_per_bpp_q40, 20);
-  const int32_t torque_q20 = q_sub_sat(load_q20, friction_q20);
+  const int32_t load_q20 = qc_mul_sat(d->position.selected.load_accel_q8, d->model.torque_per_accel_q24, 20);
+  const int32_t friction_q20 = qc_mul_sat(speed, d->config.friction_per_bpp_q40, 20);
+  const int32_t torque_q20 = qc_sub_sat(load_q20, friction_q20);
   return qc_over(torque_q20, d->control.per_torque_constant, 24);
 }
 
@@ -151,7 +151,7 @@ static void step_speed(drive_t* d, bool held) {
   drive_control_t* const c = &d->control;
   speed_controller_input_t in;
   step_ramp(d, &in);
-  in.reference_bpp = q_add_sat(in.reference_bpp, hold_position(d));
+  in.reference_bpp = qc_add_sat(in.reference_bpp, hold_position(d));
   d->limits &= ~(int32_t)LIMIT_BRAKING;
   in.speed_bpp = d->position.selected.speed_bpp;
   in.load_current_q20 = load_current(d);
@@ -167,7 +167,9 @@ static void step_speed(drive_t* d, bool held) {
 static void begin_millisecond(drive_t* d, bool held) {
   d->time_ms++;
   d->limits &= LIMIT_BRAKING | LIMIT_WEAKENING;  // of the last millisecond, for the ramp; weakening renews its own
-  if (drive_is_turning(d)) step_speed(d, held);
+  if (!drive_is_turning(d)) return;
+  make_room(d);
+  step_speed(d, held);
 }
 
 static bool weakens(const drive_t* d) { return drive_is_turning(d) || d->flags.caught; }
@@ -177,7 +179,6 @@ void drive_control_speed(drive_t* d) {
   switch (d->schedule.task) {
     case TASK_SPEED:
       if (weakens(d)) refer_field(d);
-      make_room(d);
       begin_millisecond(d, held);
       break;
     case TASK_JUDGE_FIRST:

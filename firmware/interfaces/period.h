@@ -44,6 +44,7 @@ typedef struct {
 typedef struct {
   estimator_output_t selected, low, high;
   estimator_output_t seen;  // by the position source, while it looks on
+  dq_t seen_q20;            // mean current in the frame that the windows were turned into, A
   avv_t avv;
   deviation_observer_t observer;
   blend_t blend;

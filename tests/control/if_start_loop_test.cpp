@@ -40,10 +40,12 @@ class Start {
   /// To the end of its patience: nobody agrees.
   Quiet run() {
     Quiet q;
+    int periods = 0;
     if_start_result_t result = IF_START_PENDING;
     while (result == IF_START_PENDING) {
       const Vector seen = mean_.turned(angle_ - frame_);
       const dq_t measured = raw_dq(seen, 20);
+      if (++periods % 10 == 0) if_start_renew(&turn_, &turn_config_);
       result = if_start_step(&turn_, &turn_config_, command_, 0, 0);
       frame_ = rad(turn_.angle_bam + static_cast<std::uint32_t>(turn_.speed_bpp));
       command_ = current_controller_step(&current_, &current_config_, &model_, {turn_.current_q20, 0}, measured,

@@ -57,6 +57,7 @@ Turned turn(Shaft& shaft, const if_start_config_t& c, bool backward, double off 
   Vector voltage = {0.0, 0.0};
   double worst[2] = {0.0, 0.0};
   while (t.result == IF_START_PENDING && t.periods < 100000) {
+    if (t.periods % 10 == 0) if_start_renew(&t.state, &c);
     t.result = if_start_step(&t.state, &c, raw_dq(voltage, 16), bam(shaft.angle + off), bpp(shaft.speed));
     voltage = shaft.step(rad(t.state.angle_bam), real(t.state.current_q20, 20));
     if (t.periods % 1000 == 0) worst[0] = std::exchange(worst[1], 0.0);
@@ -227,7 +228,8 @@ TEST(IfStart, ItsFiltersHaveTheirTimes) {
   const double emf = 10.0, seen = 10.0 * real(c.per_emf_q4, 4);
   double rotor = 0.0, mean = 0.0;
   for (int n = 1; n <= 3000; ++n) {
-    const double drop = motor_b().rs * 8.0 * std::min(n / 500.0, 1.0);
+    const double drop = motor_b().rs * 8.0 * std::min((n - 1) / 500.0, 1.0);  // of the current that is known then
+    if_start_renew(&s, &c);
     (void)if_start_step(&s, &c, raw_dq({drop, emf}, 16), 0, 0);
     rotor += (seen - rotor) / std::ldexp(1.0, c.filter_shift);
     mean += (rotor - mean) / 1024.0;
@@ -296,6 +298,7 @@ TEST(IfStart, TheEmfAlongItsDirectionIsTheRotorsSpeed) {
         const Vector emf = {way * speed * m.flux * std::sin(lag), way * speed * m.flux * std::cos(lag)};
         for (int n = 0; n < 20000; ++n) {
           const double drop = m.rs * 8.0 * std::min((n + 1) / 500.0, 1.0);
+          if (n % 10 == 0) if_start_renew(&s, &c);
           (void)if_start_step(&s, &c, raw_dq({emf.x + drop, emf.y}, 16), 0, 0);
         }
         const Vector along = {way * emf.x, way * emf.y + real(c.least_q16, 16)};

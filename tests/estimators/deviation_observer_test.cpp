@@ -247,8 +247,8 @@ TEST(DeviationObserver, NothingIsLeftBeforeAWindowWasSeen) {
   EXPECT_EQ(periods, 8);
 }
 
-// Each reason alone: a load that is new, an angle that is not known, seven periods, windows that told a tenth of what
-// is known.
+// Each reason alone: a load that is new, seven periods; and, urgent, an angle that is not known, windows that told a
+// tenth of what is known.
 TEST(DeviationObserver, WhenItsCovarianceIsDue) {
   deviation_observer_t s = {};
   s.gathered.periods = 6;
@@ -261,11 +261,12 @@ TEST(DeviationObserver, WhenItsCovarianceIsDue) {
   s.load_is_new = false;
   s.p_aa = INT32_MAX;
   EXPECT_FALSE(deviation_observer_is_sure(&s));
-  EXPECT_TRUE(deviation_observer_is_due(&s));
+  EXPECT_TRUE(deviation_observer_update_is_urgent(&s));
   s.p_aa = 0;
   s.p_ss = s.gathered.ss_q21 = 1 << 24;
-  EXPECT_TRUE(deviation_observer_is_due(&s));
+  EXPECT_TRUE(deviation_observer_update_is_urgent(&s));
   s.p_ss = 0;
+  EXPECT_FALSE(deviation_observer_update_is_urgent(&s));
   EXPECT_FALSE(deviation_observer_is_due(&s));
 }
 

@@ -84,7 +84,7 @@ TEST_F(Phases, TheMapsTrainsPutTheShaftBack) {
   }
   // Held for 40 ms, moved on for 30 before every second train; the last 20 are the point without current.
   for (std::size_t k = 0; k < trains.size(); ++k) {
-    EXPECT_EQ(pauses[k], 401 + (k % 2 == 0 ? 300 : 0)) << k;
+    EXPECT_EQ(pauses[k], 402 + (k % 2 == 0 ? 300 : 0)) << k << ": a train begins in a period of its own";
     EXPECT_EQ(stills[k], 200 * static_cast<int>(k + 1)) << k;
   }
 }

@@ -262,6 +262,9 @@ TEST_F(Commissioning, PhasesFollowEachOther) {
   EXPECT_FALSE(inside::flags().frozen);
   c.tick = 6000;  // of turning to its place
   commissioning_state.step(&drive);
+  EXPECT_EQ(c.phase, COMMISSIONING_ALIGN) << "the end has a period of its own";
+  inside::schedule().exclusive = true;
+  commissioning_state.step(&drive);
   EXPECT_EQ(c.phase, COMMISSIONING_STAIRCASE);
   EXPECT_EQ(c.tick, 0);
   EXPECT_TRUE(inside::flags().frozen);
@@ -273,6 +276,7 @@ TEST_F(Commissioning, PhasesFollowEachOther) {
   commissioning_state.step(&drive);
   EXPECT_EQ(c.phase, COMMISSIONING_SPIN);
   c.tick = 2;
+  c.spin.begun = true;
   inside::sensor_trim().mismatch_q30 = 4321;
   commissioning_state.step(&drive);  // a spin that is over
   EXPECT_EQ(c.phase, COMMISSIONING_MAP);
@@ -347,14 +351,14 @@ TEST_F(Commissioning, EachPhaseBeginsWithoutSums) {
   };
   first_period(commissioning_climb);
   EXPECT_EQ(c.staircase.index, 0);
-  EXPECT_EQ(c.staircase.tick, 1);
+  EXPECT_EQ(c.staircase.tick, 0);
   for (const staircase_level_t& l : c.staircase.level) {
     c.staircase.index = static_cast<std::uint16_t>(&l - c.staircase.level);
     c.staircase.tick = 0;
     c.tick = 1;
     EXPECT_FALSE(commissioning_climb(&drive));
     EXPECT_EQ(l.current | l.factor | l.command | l.window_current | l.window_factor | l.residual | l.sag, 0);
-    EXPECT_EQ(l.periods | l.windows, 0);
+    EXPECT_EQ(l.periods | l.windows | l.pairs, 0);
   }
   first_period(commissioning_map);
   EXPECT_EQ(c.map.level, 0);
@@ -374,6 +378,7 @@ TEST_F(Commissioning, EachPhaseBeginsWithoutSums) {
   }
   first_period(commissioning_spin);
   c.tick = 1;
+  inside::schedule().exclusive = true;
   EXPECT_FALSE(commissioning_spin(&drive));
   EXPECT_TRUE(inside::flags().spins && !inside::flags().frozen);
   EXPECT_EQ(c.spin.leg, 0);

@@ -45,6 +45,7 @@ class Schedule : public Drive {
     o.p_aa = raw(32.0 * share, 20);
     o.gathered = {0, 0, 0, 0};
     o.load_is_new = false;
+    o.is_sensitive = true;
   }
   static void leave_working_point() { inside::current_dq_q20().q = raw(0.13, 20); }
 
@@ -189,6 +190,19 @@ TEST_F(Schedule, AnObserverThatDoesNotKnowItsAngleLooksWhereThereIsRoom) {
     EXPECT_EQ(s.skips, long_task || s.judges);
     EXPECT_EQ(s.judges, s.task == TASK_JUDGE || s.task == TASK_JUDGE_FIRST);
   }
+}
+
+// Its first look of all is not beside the model's slots.
+TEST_F(Schedule, AnObserverThatIsNewLeavesTheModelItsSlots) {
+  know(1.1);
+  inside::observer().is_sensitive = false;
+  bool seen = false;
+  for (const schedule_t& s : next(40)) {
+    if (s.slot != SLOT_LOOK && s.slot != SLOT_OPERATING_POINT) continue;
+    EXPECT_TRUE(s.skips);
+    seen = true;
+  }
+  EXPECT_TRUE(seen);
 }
 
 TEST_F(Schedule, NothingIsJudgedInTheFirstMillisecond) {

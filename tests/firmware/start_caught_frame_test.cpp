@@ -113,6 +113,14 @@ TEST_F(StartCaught, TheFrameTurnsWithTheRotorUntilItsAxisIsSeen) {
     const double most = 15.0 * kDegree;
     EXPECT_NEAR(wrapped(rad(s.rotor.angle_bam - before)), 300.0 * kPeriod + std::clamp(off, -most, most), 2e-3) << off;
     EXPECT_EQ(inside::avv().observer.angle_bam, s.rotor.angle_bam);
+    EXPECT_TRUE(s.flux_due);
+    inside::model().trim.psi_q16 = 1;
+    inside::schedule().exclusive = false;
+    see();
+    EXPECT_TRUE(s.flux_due) << "and a period of its own";
+    inside::schedule().exclusive = true;
+    see();
+    EXPECT_FALSE(s.flux_due);
     EXPECT_EQ(inside::model().trim.psi_q16, 0) << "the flux is as told";
   }
 }

@@ -52,6 +52,7 @@ class StartCaught : public Drive {
     inside::schedule().exclusive = true;
     start_state.step(&drive);
     inside::schedule().exclusive = false;
+    inside::schedule().task = TASK_SLOT;  // the loop is not closed beside the field's control
     if (inside::start_found().phase == START_CATCH) start_state.step(&drive);
   }
   void await_pulse() {

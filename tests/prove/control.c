@@ -81,6 +81,9 @@ static void any_vector(if_start_t* s, const if_start_config_t* c) {
   s->tick = any_from(0, c->align_periods);
   s->speed_bpp = any_from(-TURN_MAX_BPP, TURN_MAX_BPP);
   s->mean_q16 = any_dq(EMF_MAX_Q16);
+  s->per_emf_q4.d = any_i32;
+  s->per_emf_q4.q = any_i32;
+  s->drop_q16 = any_i32;
   s->rotor_bpp = any_i32;
   s->mean_bpp = any_i32;
   s->agreed = any_from(0, IF_START_AGREED - 1);
@@ -97,6 +100,7 @@ static void turn_vector(int32_t periods) {
   if (!if_start_design(&c, &model, &p)) return;
   if_start_begin(&s, any_u32, any_bool());
   if (any_bool()) any_vector(&s, &c);
+  if (any_bool()) if_start_renew(&s, &c);
   if (if_start_step(&s, &c, any_dq(VOLTAGE_MAX_Q16), any_u32, any_speed()) != IF_START_PENDING) return;
   //@ assert -683565276 <= s.speed_bpp <= 683565276 && 0 <= s.tick <= 65536;
   //@ assert -1073741824 <= s.mean_q16.d <= 1073741824 && -1073741824 <= s.mean_q16.q <= 1073741824;

@@ -87,6 +87,7 @@ static void close_loop(drive_t* d) {
   axis_begin(&starting.axis);
   d->found.sigma_q8 = rotor->sigma_q8;
   flying_start.learnt = false;
+  flying_start.flux_due = false;
   d->flags.shorted = false;
   flying_start.stray = 0;
   d->control.references.closed = true;
@@ -167,7 +168,7 @@ static void learn(drive_t* d) {
   s->learnt = start_sees_axis(d, d->flags.invalid == 0u, &axis_bam);
   if (s->learnt) {
     s->rotor.angle_bam += (uint32_t)q_limit(axis_bam, STRAY_MAX_BAM);
-    take_flux(d);
+    s->flux_due = true;
   }
   position_preset_axis(d, s->rotor.angle_bam, s->rotor.speed_bpp);
 }
@@ -181,13 +182,18 @@ static void begin_catch(drive_t* d) {
 static start_phase_t step_catch(drive_t* d) {
   flying_start_t* const s = &flying_start;
   if (d->flags.shorted) {
-    close_loop(d);
+    if (d->schedule.task != TASK_FIELD) close_loop(d);  // which weakens the field itself
     return START_GOES_ON;
   }
   if (d->flags.gates_off) start_power(d, true);
   if (!s->learnt) {
     learn(d);
     return START_GOES_ON;
+  }
+  if (s->flux_due) {
+    if (!start_has_exclusive_slot(d)) return START_GOES_ON;
+    take_flux(d);
+    s->flux_due = false;
   }
   s->stray = q_follow(s->stray, d->position.avv.error_bam, 4);
   if (starting.tick < CATCH_PERIODS || !start_has_exclusive_slot(d)) return START_GOES_ON;

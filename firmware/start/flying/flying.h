@@ -10,7 +10,8 @@
 typedef struct {
   uint16_t pause;  // periods to listen before the next pulse
   uint16_t pulses;
-  bool learnt;           // axis and inverse inductances of a caught rotor are
+  bool learnt;           // axis and inverse inductances of a caught rotor are,
+  bool flux_due;         // and its flux is not yet
   flying_rotor_t rotor;  // caught: at the second pulse, then carried on
   int32_t emf_q16;       // of that pulse, V
   int32_t stray;         // filtered angle error while catching, binary angle

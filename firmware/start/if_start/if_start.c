@@ -68,6 +68,7 @@ static void take_over(drive_t* d) {
 
 static start_phase_t step_if_ramp(drive_t* d) {
   const estimator_output_t* const seen = &d->position.seen;
+  if (d->schedule.task == TASK_FIELD) if_start_renew(&if_ramp, &if_ramp_config);
   const if_start_result_t result =
       if_start_step(&if_ramp, &if_ramp_config, d->control.command_q16, seen->angle_bam, seen->speed_bpp);
   d->control.references.current_q20.d = if_ramp.current_q20;
