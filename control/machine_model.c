@@ -177,7 +177,7 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
 }
 
 void machine_model_scale_inertia(machine_model_t* m, const machine_model_t* nominal, int32_t ratio_q24) {
-  m->accel_q12 = q_mul_sat(nominal->accel_q12, ratio_q24, 24);
+  m->accel_q12 = qc_mul_sat(nominal->accel_q12, ratio_q24, 24);
   m->torque_per_accel_q24 = qc_over(nominal->torque_per_accel_q24, q_invert(ratio_q24), 24);
 }
 

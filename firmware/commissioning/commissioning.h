@@ -27,12 +27,11 @@
 #define SPIN_STATIONS 3u
 #define SPIN_RAMPS 2u
 
-/// One level of the DC staircase. Sums over periods, windows and pairs of them; currents and voltages Q20, the sag V^2
-/// Q12.
+/// One level of the DC staircase. Sums over periods and over windows; currents and voltages Q20, the sag V^2 Q12.
 typedef struct {
-  int64_t current, factor, command;  // per period
-  int64_t window_current, window_factor, residual, sag;
-  int32_t periods, windows, pairs;
+  int64_t current, factor, command, sag;  // per period
+  int64_t window_current, window_factor, residual;
+  int32_t periods, windows;
   int32_t link_q16;
 } staircase_level_t;
 

@@ -55,13 +55,6 @@ bool commissioning_align(drive_t* d) {
   return true;
 }
 
-void commissioning_add_still(const drive_t* d) {
-  if (d->schedule.task == TASK_JUDGE) return;  // has the torque constant to make
-  deviation_t first;
-  deviation_t second;
-  if (commissioning_pair(d, &first, &second)) tensor_add(&commissioning.unsaturated, &first, &second);
-}
-
 // AVV alone, or no measurement at all and the angle by the torque. A machine without an axis is not measured at rest:
 // its rotor turns to where the current points.
 estimator_output_t commissioning_estimate(drive_t* d, estimator_input_t* in) {
@@ -98,10 +91,16 @@ deviation_t commissioning_window(const drive_t* d, uint16_t k) {
   return deviation_of(&at, &d->samples.windows[k], &d->samples.frames[k]);
 }
 
-bool commissioning_pair(const drive_t* d, deviation_t* first, deviation_t* second) {
+bool commissioning_add_pair(const drive_t* d, tensor_sums_t* sums) {
   if (!commissioning_has_pair(d)) return false;
   const deviation_model_t at = model_now(d);
-  *first = deviation_of(&at, &d->samples.windows[0], &d->samples.frames[0]);
-  *second = deviation_of(&at, &d->samples.windows[1], &d->samples.frames[1]);
+  const deviation_t first = deviation_of(&at, &d->samples.windows[0], &d->samples.frames[0]);
+  const deviation_t second = deviation_of(&at, &d->samples.windows[1], &d->samples.frames[1]);
+  tensor_add(sums, &first, &second);
   return true;
+}
+
+void commissioning_add_still(const drive_t* d) {
+  if (d->schedule.task == TASK_JUDGE) return;  // has the torque constant to make
+  (void)commissioning_add_pair(d, &commissioning.unsaturated);
 }

@@ -69,13 +69,10 @@ static void predict(const drive_t* d, map_t* m) {
 }
 
 static void add_period(const drive_t* d, map_t* m, uint16_t segment) {
-  deviation_t first;
-  deviation_t second;
-  if (!commissioning_pair(d, &first, &second)) return;
   const uint16_t mirrored = (uint16_t)(m->train % 2u);
   const bool negative = (signs[segment] < 0) != (mirrored != 0u);
   map_group_t* const g = &m->group[m->level][2u * mirrored + (negative ? 1u : 0u)];
-  tensor_add(&g->tensor, &first, &second);
+  if (!commissioning_add_pair(d, &g->tensor)) return;
   q_gather(&g->position, m->position_bam);
   q_gather(&g->current, d->control.measured_q20.q);
 }

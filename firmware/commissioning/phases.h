@@ -23,7 +23,7 @@ estimator_output_t commissioning_estimate(drive_t* d, estimator_input_t* in);
 bool commissioning_has_pair(const drive_t* d);
 /// One of them (0, 1) against the model, in the frame that it was turned into.
 deviation_t commissioning_window(const drive_t* d, uint16_t k);
-/// Both; false when there are none.
-bool commissioning_pair(const drive_t* d, deviation_t* first, deviation_t* second);
+/// Both to the sums of a tensor; false when there are none.
+bool commissioning_add_pair(const drive_t* d, tensor_sums_t* sums);
 
 #endif

@@ -35,10 +35,10 @@ static bool command_columns(const staircase_t* s, columns_t* c) {
 static bool window_columns(const staircase_t* s, const machine_model_t* m, int32_t resistance_q24, columns_t* c) {
   for (uint16_t k = 0; k < STAIRCASE_LEVELS; k++) {
     const staircase_level_t* const l = &s->level[k];
-    if (l->windows == 0 || l->pairs == 0) return false;
+    if (l->windows == 0) return false;
     c->current[k] = mean_of(l->window_current, l->windows);
     c->factor[k] = mean_of(l->window_factor, l->windows);
-    const int32_t sag_q20 = q_div(fit_ratio(l->sag, l->pairs, 0), l->link_q16, 24);
+    const int32_t sag_q20 = q_div(fit_ratio(l->sag, l->periods, 0), l->link_q16, 24);
     const int32_t missing_q20 = qc_sub_sat(sag_q20, q_div(fit_ratio(l->residual, l->windows, 0), m->yd_q30, 30));
     const int32_t known_q20 = qc_mul_sat(qc_sub_sat(resistance_q24, m->rs_q24), c->current[k], 24);
     c->voltage[k] = for_fit(qc_sub_sat(missing_q20, known_q20));

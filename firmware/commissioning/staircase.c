@@ -16,6 +16,7 @@
 // without an overload: with the machine cool, a quarter of what the overload's time constant bears. Resistance of
 // winding and of devices cannot be told apart this way: the devices' is kept as it was given.
 
+#include "firmware/base/clear.h"
 #include "firmware/board/functions.h"
 #include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
@@ -79,9 +80,8 @@ static void add_sag(const drive_t* d, staircase_level_t* l, rotation_t r) {
   const int32_t share_q15 = (middles - length) * (int32_t)32768 / q_max(ends - length, 1);
   const int32_t at_ends_q16 = d->samples.link_end_q16[0] - d->samples.link_end_q16[1];
   const ab_t quarter_q16 = {q_shr(e[0].voltage_q19.alpha - e[1].voltage_q19.alpha, 5),
-                          q_shr(e[0].voltage_q19.beta - e[1].voltage_q19.beta, 5)};
+                            q_shr(e[0].voltage_q19.beta - e[1].voltage_q19.beta, 5)};
   q_gather(&l->sag, qc_mul_sat(qc_mul(at_ends_q16, share_q15, 15), frame_park(quarter_q16, r).d, 20));
-  l->pairs = qc_add_sat(l->pairs, 1);
 }
 
 static void add_window(const drive_t* d, staircase_level_t* l, rotation_t r, uint16_t k) {
@@ -96,28 +96,15 @@ static void add_window(const drive_t* d, staircase_level_t* l, rotation_t r, uin
 // each of them is made of the same patterns.
 static void add_one(const drive_t* d, staircase_t* s) {
   staircase_level_t* const l = &s->level[s->index];
-  const rotation_t r = frame_rotation(d->position.selected.angle_bam);
   s->turn = (s->turn + 1u < TURNS * TURN_PERIODS) ? (uint16_t)(s->turn + 1u) : 0u;
-  const bool pair = commissioning_has_pair(d);
+  if (!commissioning_has_pair(d)) return;
+  const rotation_t r = frame_rotation(d->position.selected.angle_bam);
   if (s->turn < TURN_PERIODS) {
     add_period(d, l, r);
-    if (pair) add_sag(d, l, r);
-  } else if (pair) {
+    add_sag(d, l, r);
+  } else {
     add_window(d, l, r, (uint16_t)(s->turn / TURN_PERIODS - 1u));
   }
-}
-
-static void empty(staircase_level_t* l) {
-  l->current = 0;
-  l->factor = 0;
-  l->command = 0;
-  l->window_current = 0;
-  l->window_factor = 0;
-  l->residual = 0;
-  l->sag = 0;
-  l->periods = 0;
-  l->windows = 0;
-  l->pairs = 0;
 }
 
 bool commissioning_climb(drive_t* d) {
@@ -148,7 +135,7 @@ bool commissioning_climb(drive_t* d) {
   }
   commissioning_set_d(d, level_q20(d, s->index));
   staircase_level_t* const l = &s->level[s->index];
-  if (s->tick == 0) empty(l);
+  if (s->tick == 0) clear(l, sizeof *l);
   s->tick = qc_add_sat(s->tick, 1);
   if (s->tick > SETTLE_PERIODS) add_one(d, s);
   if (s->tick < SETTLE_PERIODS + LEVEL_PERIODS) return false;

@@ -16,8 +16,8 @@ static void look(const drive_t* d, inertia_seen_t* in) {
   in->torque_accel_q8 = d->position.torque_accel_q8;
   // Three tenths of what the current limit gives.
   const int32_t limit_q16 = q_mul(machine_torque_constant_q24(&d->model, 0), d->config.values.current_limit, 28);
-  in->least_accel_q8 = q_mul_sat(limit_q16, d->model.accel_q12, 20) / 10 * 3;
-  in->still_bpp = q_mul_sat(STILL_RPM_Q16, d->config.bpp_per_rpm_q8, 24);
+  in->least_accel_q8 = qc_mul_sat(limit_q16, d->model.accel_q12, 20) / 10 * 3;
+  in->still_bpp = qc_mul_sat(STILL_RPM_Q16, d->config.bpp_per_rpm_q8, 24);
 }
 
 // The load that the observer has made of the wrong inertia goes, and the speed that it could not believe comes.

@@ -217,7 +217,8 @@ static void watch_trigger(int32_t value) {
   if (met && scope.state == SCOPE_ARMED) scope.fired = true;
 }
 
-static void record(uint16_t known) {
+// The trigger's signal is looked at once, where it is recorded as well.
+static void record(uint16_t known, int32_t trigger) {
   const uint16_t unknown = (uint16_t)~known;
   const watched_t* const end = scope.watched + scope.setup.count;
   const uint16_t here = scope.head;
@@ -225,7 +226,8 @@ static void record(uint16_t known) {
   for (const watched_t* w = scope.watched; w < end; w++, row++) {
     int16_t word = SCOPE_UNKNOWN;
     if ((w->needs & unknown) == 0u) {
-      word = (int16_t)q_clamp(q_shr(w->look(&drive, known), w->shift), -INT16_MAX, INT16_MAX);
+      const int32_t value = (w->look == scope.trigger_look) ? trigger : w->look(&drive, known);
+      word = (int16_t)q_clamp(q_shr(value, w->shift), -INT16_MAX, INT16_MAX);
     }
     (*row)[here] = word;
   }
@@ -237,11 +239,12 @@ void scope_step(void) {
   if (!is_running()) return;
   hal_profile_step(CYCLES_SCOPE);
   const uint16_t known = drive_known(&drive);
-  watch_trigger(scope.trigger_look(&drive, known));
+  const int32_t trigger = scope.trigger_look(&drive, known);
+  watch_trigger(trigger);
   if (--scope.wait > 0u) return;
   scope.wait = scope.setup.decimation;
   const uint16_t here = scope.head;
-  record(known);
+  record(known, trigger);
   if (scope.state == SCOPE_ARMED && scope.fired) {
     scope.mark = here;
     scope.mark_time_ms = drive.time_ms;

@@ -60,7 +60,6 @@ inline staircase_t climbed(const machine_model_t& m, double resistance, double d
     staircase_level_t& l = s.level[k];
     l.periods = 4200;
     l.windows = 8400;
-    l.pairs = 8400;
     l.current = 4200LL * raw(i, 20);
     l.factor = 4200LL * raw(f, 20);
     l.command = 4200LL * raw(resistance * i + (drop_error + edge_error) * f, 20);
