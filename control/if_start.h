@@ -67,7 +67,7 @@ static inline bool if_start_is_up(const if_start_t* s, const if_start_config_t* 
   return q_abs_sat(s->speed_bpp) >= c->speed_bpp;
 }
 
-/// What changes slowly: once in a millisecond. Before the first time no EMF is looked at.
+/// What changes slowly: once in a millisecond. Before the first time no speed is made of the EMF.
 void if_start_renew(if_start_t* s, const if_start_config_t* c);
 
 /// One period. voltage: command in the last one, V; seen: angle and speed of the source.

@@ -44,7 +44,7 @@ bool speed_controller_init(speed_controller_t* s, const speed_controller_config_
   const int32_t weight_q16 = qc_mul_sat(qc_mul_sat(b_q24, b_q24, 24), c->alpha_q8, 16);
   s->gains.share_q30 = q_clamp(ONE_Q30 - q_div(65536L, qc_add_sat(weight_q16, 65536L), 30), 0, ONE_Q30);
   const int32_t ratio_q30 = q_div(c->step_periods * 1000L, qc_mul(m->periods_per_second, c->trajectory_ms_q8, 8), 30);
-  s->approach_q30 = (ratio_q30 >= ONE_Q30 / 2) ? ONE_Q30 : ONE_Q30 - exp_minus_q30(ratio_q30);
+  s->approach_q30 = (ratio_q30 > ONE_Q30 / 2) ? ONE_Q30 : ONE_Q30 - exp_minus_q30(ratio_q30);
   // Pole assignment: Kp = 2 zeta wn J / Kt, Ki Ts = wn^2 Ts J / Kt, written with b = Kt Ts / J.
   const int32_t wn_ts_q24 = qc_mul_sat(c->pi_bandwidth_q8, step_q30, 14);
   s->gains.pi_kp = qc_mul_sat(s->gains.amps_per_bpp, qc_mul_sat(2 * c->pi_damping_q12, wn_ts_q24, 12), 24);

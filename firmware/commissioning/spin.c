@@ -55,14 +55,14 @@ static void begin(drive_t* d) {
     d->control.references.current_q20.q = 0;
   }
   commissioning.spin.begun = true;
-  d->periods = 0;  // as at the beginning of a run: the observer knows as little
+  d->periods = 0;  // as at the beginning of a run
   d->flags.spins = true;
   d->flags.frozen = false;
   d->control.target_bpp = d->control.ramp.value;
 }
 
-// Once in a millisecond: moves the speed reference towards the leg's; true when it is there. The
-// drive's own ramp may be slower still.
+// Once in a millisecond: moves the speed reference towards the leg's; true when it is there. The drive's own ramp may
+// be slower still.
 static bool approach(drive_t* d) {
   const int32_t high = qc_mul_sat(target_rpm_q16((uint16_t)LEG_UP), d->config.bpp_per_rpm_q8, 24);
   const int32_t goal = qc_mul_sat(target_rpm_q16(commissioning.spin.leg), d->config.bpp_per_rpm_q8, 24);
@@ -99,6 +99,7 @@ bool commissioning_spin(drive_t* d) {
     return false;
   }
   if (!s->begun) {
+    if (d->flags.spins) d->control.target_bpp = d->control.ramp.value;  // a vector brought it: it turns on meanwhile
     if (start_has_exclusive_slot(d)) begin(d);
     return false;
   }

@@ -12,8 +12,8 @@ PARAMETER(174, slice_time, US, 16, 2, 500, 2000, 500, STOPPED,
           "interval of the hysteresis' decisions, a whole part of 100 us")
 
 // The paper's ZVV
-PARAMETER(310, paper_terms, NONE, 0, 0, 0, 127, 127, STOPPED,
-          "paper's scheme: 1 rotation in D, 2 integral fed back, 4 drops, 8 load, 16 turns in blend, "
+PARAMETER(311, paper_terms, NONE, 0, 0, 0, 127, 127, STOPPED,
+          "sum of 1 rotation in D, 2 integral fed back, 4 drops, 8 load, 16 turns in blend, "
           "32 trajectory, 64 residuals in AVV")
 
 // Position by the stator flux

@@ -167,9 +167,7 @@ static void step_speed(drive_t* d, bool held) {
 static void begin_millisecond(drive_t* d, bool held) {
   d->time_ms++;
   d->limits &= LIMIT_BRAKING | LIMIT_WEAKENING;  // of the last millisecond, for the ramp; weakening renews its own
-  if (!drive_is_turning(d)) return;
-  make_room(d);
-  step_speed(d, held);
+  if (drive_is_turning(d)) step_speed(d, held);
 }
 
 static bool weakens(const drive_t* d) { return drive_is_turning(d) || d->flags.caught; }
@@ -179,6 +177,7 @@ void drive_control_speed(drive_t* d) {
   switch (d->schedule.task) {
     case TASK_SPEED:
       if (weakens(d)) refer_field(d);
+      make_room(d);
       begin_millisecond(d, held);
       break;
     case TASK_JUDGE_FIRST:

@@ -73,6 +73,7 @@ static drive_state_t state_behind(const drive_t* d) {
 
 void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   drive_bumpless_transfer(d, angle_bam, speed_bpp);
+  d->control.references.current_q20.q = 0;
   drive_enter(d, state_behind(d));
   if (d->state == DRIVE_STOP) drive_states[DRIVE_COMMISSION]->abandon(d);
 }

@@ -252,6 +252,14 @@ TEST(SpeedController, OneStepOfThePredictiveLaw) {
 TEST(SpeedController, WithoutATrajectoryTheCommandIsTheTarget) {
   Random random(43);
   Design d;
+  for (const double trajectory : {2.5e-3, 2.0e-3}) {  // two steps of 1 ms are the shortest that there is
+    d.trajectory = trajectory;
+    const machine_model_t m = model_of(d.motor);
+    const speed_controller_config_t c = d.config();
+    speed_controller_t s;
+    ASSERT_TRUE(speed_controller_init(&s, &c, &m));
+    EXPECT_LT(s.approach_q30, raw(0.64, 30)) << trajectory;
+  }
   d.trajectory = 2.5e-3;
   for (const int periods : {10, 20}) {  // 1 ms and 2 ms
     d.step_periods = periods;

@@ -86,7 +86,7 @@ TEST_F(Phases, APairIsUnderOppositeVectors) {
 }
 
 // Seven levels of i_d up to the limit and seven below zero up to the field-weakening limit, evenly spaced from where
-// the ripple changes no current's sign on. Each is summed for 0.84 s, 60 ms after it was asked for.
+// the ripple changes no current's sign on. Its sums have a third each of 0.84 s, from 60 ms after it was asked for on.
 TEST_F(Phases, TheStaircaseSumsEachLevel) {
   parameters.weakening_limit = raw(0.8 * limit_, 20);
   use_parameters();
@@ -199,7 +199,12 @@ TEST_F(Phases, TheSpinOfAShaftThatShowsNoAxisBeginsWithAVector) {
   inside::flags().spins = true;
   inside::selected() = {bam(0.4), bpp_of(300), 0, 32767};
   inside::speed_ramp().value = bpp_of(300);
+  inside::schedule().exclusive = false;
+  EXPECT_FALSE(commissioning_spin(&drive));
+  EXPECT_FALSE(commissioning.spin.begun) << "in a period of its own";
+  EXPECT_EQ(inside::target_bpp(), bpp_of(300)) << "and is not braked meanwhile";
   EXPECT_FALSE(step(commissioning_spin));
+  EXPECT_TRUE(commissioning.spin.begun);
   EXPECT_EQ(inside::selected().speed_bpp, bpp_of(300)) << "what is known of the shaft stays";
   EXPECT_NEAR(inside::target_bpp(), bpp_of(300), bpp_of(600) / 300 + 1);
   int n = 0;

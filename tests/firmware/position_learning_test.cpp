@@ -57,13 +57,17 @@ TEST_F(Learning, ADriveThatRunsLearnsEachInItsTurn) {
   }
 }
 
-// No period has room for the polarity's watch beside it.
+// The watch over the polarity has the voltage's turn, and leaves the one in which it follows the axis.
 TEST_F(Learning, TheWatchTakesTheVoltagesTurn) {
   for (const bool watched : {true, false}) {
     learn_with(POSITION_OBSERVER);
     polarity_watch.open = watched;
     estimate(SLOT_VOLTAGE);
     EXPECT_EQ(voltage(), !watched);
+    learn_with(POSITION_OBSERVER);
+    polarity_watch.open = watched;
+    estimate(SLOT_LOOK);
+    EXPECT_EQ(voltage(), watched);
   }
 }
 

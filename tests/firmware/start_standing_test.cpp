@@ -366,6 +366,12 @@ TEST_F(StartStanding, TheGatesHaveTheirInstant) {
   EXPECT_EQ(inside::flags().invalid, 2) << "this period and the next have begun with the gates off";
 }
 
+TEST_F(StartStanding, NoTorqueIsAskedForWhenItIsOver) {
+  inside::reference_dq_q20().q = raw(3.0, 20);
+  start_run(&drive, bam(0.8), 0);
+  EXPECT_EQ(inside::reference_dq_q20().q, 0);
+}
+
 // Speed control, encoder and the watch over the polarity go on from here; nobody holds the shaft.
 TEST_F(StartStanding, WhatRunsGoesOnFromTheAngleAndTheSpeed) {
   use_source(POSITION_ENCODER);

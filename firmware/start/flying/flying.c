@@ -194,6 +194,7 @@ static start_phase_t step_catch(drive_t* d) {
     if (!start_has_exclusive_slot(d)) return START_GOES_ON;
     take_flux(d);
     s->flux_due = false;
+    return START_GOES_ON;
   }
   s->stray = q_follow(s->stray, d->position.avv.error_bam, 4);
   if (starting.tick < CATCH_PERIODS || !start_has_exclusive_slot(d)) return START_GOES_ON;

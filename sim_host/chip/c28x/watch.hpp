@@ -30,7 +30,7 @@ class Watch {
   void stop_nowhere() {
     for (std::uint8_t& marked : marks_) marked = static_cast<std::uint8_t>(marked & ~kStop);
     data_.clear();
-    accessed_ = {};
+    accessed_ = noted_ = {};
   }
   /// Stops after so many instructions, repeats not counted; entries into interrupts are none.
   void stop_after(std::uint64_t instructions) { left_ = instructions; }
@@ -88,8 +88,9 @@ class Watch {
   bool stops(const Registers& r, std::uint64_t cycles) {
     const std::uint8_t marked = mark_at(r.pc);
     const bool passing = r.pc == passing_;
+    const bool accessed = !data_.empty() && any_accessed();
     passing_ = kNowhere;
-    if ((!passing && (left_ == 0 || (marked & kStop) != 0)) || (!data_.empty() && any_accessed())) {
+    if ((!passing && (left_ == 0 || (marked & kStop) != 0)) || accessed) {
       passing_ = r.pc;
       left_ = kUnlimited;
       replaced_ = false;
