@@ -57,17 +57,16 @@ TEST_F(Learning, ADriveThatRunsLearnsEachInItsTurn) {
   }
 }
 
-// The watch over the polarity has the voltage's turn, and leaves the one in which it follows the axis.
-TEST_F(Learning, TheWatchTakesTheVoltagesTurn) {
-  for (const bool watched : {true, false}) {
-    learn_with(POSITION_OBSERVER);
-    polarity_watch.open = watched;
-    estimate(SLOT_VOLTAGE);
-    EXPECT_EQ(voltage(), !watched);
-    learn_with(POSITION_OBSERVER);
-    polarity_watch.open = watched;
-    estimate(SLOT_LOOK);
-    EXPECT_EQ(voltage(), watched);
+// A period with three windows has no room for the polarity's watch beside it.
+TEST_F(Learning, TheWatchTakesTheVoltagesTurnOfAFullPeriod) {
+  for (const std::uint16_t count : {2, 3}) {
+    for (const bool watched : {true, false}) {
+      learn_with(POSITION_OBSERVER);
+      see(count);
+      polarity_watch.open = watched;
+      estimate(SLOT_VOLTAGE);
+      EXPECT_EQ(voltage(), !(watched && count == 3));
+    }
   }
 }
 

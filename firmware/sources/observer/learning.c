@@ -4,6 +4,9 @@
 #include "firmware/drive/steps.h"
 #include "firmware/sources/sources.h"
 
+// A period with three windows has no room for both the polarity's watch and what else has the slot.
+static bool is_full(const drive_t* d) { return d->samples.count >= ESTIMATOR_WINDOWS; }
+
 static bool is_slot(const drive_t* d, schedule_slot_t slot) { return d->schedule.slot == slot; }
 
 static void match_sensors(drive_t* d, const regression_t* r, int32_t share_q30) {
@@ -14,17 +17,15 @@ static void match_sensors(drive_t* d, const regression_t* r, int32_t share_q30) 
 
 void source_learn(drive_t* d, const regression_t* r) {
   const bool inductance = is_slot(d, SLOT_INDUCTANCE);
-  // The voltage's slot is the polarity's while that is watched: then what looks at the axis leaves a slot free.
-  const bool runs = drive_is_turning(d);
-  const bool watched = runs && polarity_watch_is_awake(d);
-  if (!(inductance || is_slot(d, watched ? SLOT_LOOK : SLOT_VOLTAGE)) || !d->position.is_near) return;
+  if (!(inductance || is_slot(d, SLOT_VOLTAGE)) || !d->position.is_near) return;
   // The slot comes 5/4 as seldom where eight of ten periods have one, and 5/2 where four have; there, learning 3/2 as
   // much leaves the angle quieter.
   const int32_t share_q30 = d->config.adapt_share_q30 / 4 * (d->schedule.turning ? 6 : 5);
+  const bool runs = drive_is_turning(d);
   if (inductance) inverse_inductance_step(&d->model, r, share_q30);
   if (inductance == runs) {
     match_sensors(d, r, share_q30);
-  } else if (runs) {
+  } else if (runs && !(polarity_watch_is_awake(d) && is_full(d))) {
     const int32_t w_q30 = machine_speed_rad_q30(d->position.selected.speed_bpp);
     voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30 / 2 * 3);
   }
