@@ -125,7 +125,7 @@ _PARAMETERS = [
     (83, "speed_trajectory", "ms", 1, 2.0, 200.0, 7.0, "STOPPED", "time constant of the trajectory"),
     (69, "zvv_proportional", "rad/s", 1, 0.1, 200.0, 11.0, "ALWAYS", "Kp of ZVV"),
     (70, "zvv_integral", "rad/s2", 1, 0.0, 2000.0, 1100.0, "ALWAYS", "Ki of ZVV"),
-    (310, "paper_terms", "", 0, 0.0, 127.0, 127.0, "STOPPED", "what it has beside the print"),
+    (311, "paper_terms", "", 0, 0.0, 127.0, 127.0, "STOPPED", "what it has beside the print"),
     (82, "speed_alpha", "A2s2", 0, 1.0, 100000.0, 200.0, "STOPPED", "weight of the predicted speed error"),
     (81, "speed_law", "", 0, 0.0, 1.0, 0.0, "STOPPED", "0 predictive, 1 PI"),
     (86, "speed_ramp", "rpm/s", 0, 0.0, 100000.0, 3000.0, "ALWAYS", "slope of the speed reference"),

@@ -169,7 +169,7 @@ def test_a_parameter_leads_to_what_it_does_and_the_guide_is_a_click_away(tuned):
     heading = book.locator("h3#speed_ramp")
     heading.wait_for()
     assert book.evaluate("document.querySelector(':target').id") == "speed_ramp"
-    assert 0 <= heading.bounding_box()["y"] < 100
+    assert -1 < heading.bounding_box()["y"] < 100  # it is scrolled to a whole pixel
     assert book.evaluate("document.documentElement.scrollWidth") == 1280
     tuned.click("#guide")  # into the tab that is open
     book.wait_for_selector("h1:has-text('Tuning by what you see')")
