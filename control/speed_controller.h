@@ -5,10 +5,10 @@
 // and minimising alpha (w(n+1) - w_r(n+1))^2 + (delta i)^2 gives
 //   delta i = k [w_r(n+1) - a w(n) - b i(n-1)],   k = alpha b / (alpha b^2 + 1)                          (53), (54)
 // Two things are added to the paper. The target w_r(n+1) is a reference trajectory that starts at the measured speed
-// and closes the distance with a time constant: with w_r = w* itself the loop has poles at z^2 - (2 - 2kb) z + (1 -
-// kb), which ring for every kb below one and amplify the estimator's noise as kb approaches it. (A time constant below
-// two steps is none: that is w* itself.) And the load is not the
-// differentiated speed of the paper's Fig. 7 but the load torque that the position observer carries as a state.
+// and closes the distance with a time constant: with w_r = w* itself, which a time constant below two steps stands for,
+// the loop has poles at z^2 - (2 - 2kb) z + (1 - kb), which ring for every kb below one and amplify the estimator's
+// noise as kb approaches it. And the load is not the differentiated speed of the paper's Fig. 7 but the load torque
+// that the position observer carries as a state.
 //
 // PI: pole assignment for J s w = Kt i - B w with the damping and frequency given; integrator with conditional release.
 //

@@ -163,10 +163,11 @@ TEST_F(Phases, TheSpinSumsStationsAndRamps) {
     EXPECT_EQ(at.current_d, std::int64_t{10000} * raw(0.25, 20));
   }
   for (const spin_ramp_t& ramp : s.ramp) {
-    EXPECT_NEAR(ramp.periods, 2000 + 4000, 10);
+    EXPECT_NEAR(ramp.periods, 2000 + 4000, 10) << "a ramp ends with a millisecond";
     EXPECT_EQ(ramp.current_q, std::int64_t{ramp.periods} * raw(0.5, 20));
   }
-  // up: 2000 periods of the mean of both speeds, then 4000 at the higher; down: at the lower
+  // up: 2000 periods of the mean of both speeds, then 4000 at the higher; down: at the lower. Steps once a millisecond
+  // begin and end up to ten periods beside that.
   EXPECT_NEAR(static_cast<double>(s.ramp[0].speed) / high, 2000.0 * 2.0 / 3.0 + 4000.0, 20.0);
   EXPECT_NEAR(static_cast<double>(s.ramp[1].speed) / high, 2000.0 * 2.0 / 3.0 + 4000.0 / 3.0, 20.0);
 

@@ -107,6 +107,22 @@ TEST_F(CommissioningStairs, ALevelIsNoOverload) {
   EXPECT_EQ(stairs().most_q20, parameters.current_limit);
 }
 
+// At rest the pairs wait for the period that makes the torque constant.
+TEST_F(CommissioningStairs, ThePairsAtRestAreNotBesideTheTorqueConstant) {
+  inside::window_count() = 2;
+  inside::windows()[0] = inside::windows()[1] = {};
+  inside::windows()[0].span_ticks = inside::windows()[1].span_ticks = 2500;
+  inside::windows()[0].voltage_q19 = {raw(200.0, 19), 0};
+  inside::windows()[1].voltage_q19 = {raw(-200.0, 19), 0};
+  int expected = 0;
+  for (const task_t task : {TASK_SPEED, TASK_JUDGE_FIRST, TASK_SLOT, TASK_RENEW, TASK_FIELD, TASK_JUDGE}) {
+    inside::schedule().task = task;
+    commissioning_add_still(&drive);
+    expected += task == TASK_JUDGE ? 0 : 1;
+    EXPECT_EQ(commissioning.unsaturated.count, expected) << task;
+  }
+}
+
 // A train or a pause without a pair of opposite windows adds nothing to its sums.
 TEST_F(CommissioningStairs, TheMapSumsPairsOnly) {
   for (const bool pair : {true, false}) {

@@ -192,6 +192,18 @@ TEST_F(Schedule, AnObserverThatDoesNotKnowItsAngleLooksWhereThereIsRoom) {
   }
 }
 
+// A shaft that is caught has its field weakened before it counts as one that turns: the windows wait for that.
+TEST_F(Schedule, BesideTheFieldOfACaughtShaftTheWindowsAreLeftOut) {
+  inside::state() = DRIVE_START;
+  for (const bool caught : {true, false}) {
+    inside::flags().caught = caught;
+    for (const schedule_t& s : next(20)) {
+      EXPECT_FALSE(s.turning);
+      EXPECT_EQ(s.skips, caught && s.task == TASK_FIELD);
+    }
+  }
+}
+
 // Its first look of all is not beside the model's slots.
 TEST_F(Schedule, AnObserverThatIsNewLeavesTheModelItsSlots) {
   know(1.1);

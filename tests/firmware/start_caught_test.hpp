@@ -52,8 +52,12 @@ class StartCaught : public Drive {
     inside::schedule().exclusive = true;
     start_state.step(&drive);
     inside::schedule().exclusive = false;
-    inside::schedule().task = TASK_SLOT;  // the loop is not closed beside the field's control
-    if (inside::start_found().phase == START_CATCH) start_state.step(&drive);
+    if (inside::start_found().phase != START_CATCH) return;
+    inside::schedule().task = TASK_FIELD;
+    start_state.step(&drive);
+    EXPECT_FALSE(inside::loop_is_closed()) << "not beside the field's control";
+    inside::schedule().task = TASK_SLOT;
+    start_state.step(&drive);
   }
   void await_pulse() {
     for (int n = 0; n < 700 && inside::start_found().phase != START_PULSE; ++n) period();

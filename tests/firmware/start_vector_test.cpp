@@ -39,6 +39,19 @@ TEST_F(StartByVector, AVectorBeginsFromRest) {
   }
 }
 
+// What it knows of the EMF it renews beside the field's control, which has nothing to do meanwhile.
+TEST_F(StartByVector, TheEmfsDirectionIsRenewedOnceInAMillisecond) {
+  if_ramp_phase.begin(&drive);
+  for (const task_t task : {TASK_SPEED, TASK_JUDGE_FIRST, TASK_SLOT, TASK_RENEW, TASK_JUDGE}) {
+    inside::schedule().task = task;
+    (void)if_ramp_phase.step(&drive);
+    EXPECT_EQ(if_ramp.per_emf_q4.q, 0) << task;
+  }
+  inside::schedule().task = TASK_FIELD;
+  (void)if_ramp_phase.step(&drive);
+  EXPECT_NE(if_ramp.per_emf_q4.q, 0);
+}
+
 // Gates that the comparator does not let on are a fault, and nothing begins.
 TEST_F(StartByVector, WithoutGatesNoVectorBegins) {
   start_power(&drive, false);

@@ -1,4 +1,4 @@
-"""A process that has the native module of an edition, and what a drive of it answers when it is switched on."""
+"""A process that has the native module of an edition or board, and what a drive answers when it is switched on."""
 
 import os
 import subprocess
@@ -28,16 +28,21 @@ SAVED = "the values have been saved"
 IN_FORCE = "the saved values are in force"
 
 
-def on(edition: str, *command: str, expected: int = 0) -> str:
+def with_build(variable: str, name: str, *command: str, expected: int = 0) -> str:
+    """What it says, with the build that this variable of the environment names."""
     done = subprocess.run(
         [sys.executable, *command],
-        env={**os.environ, "STILLSPIN_EDITION": edition},
+        env={**os.environ, variable: name},
         capture_output=True,
         text=True,
         check=False,
     )
     assert done.returncode == expected, done.stdout + done.stderr
     return done.stdout + done.stderr
+
+
+def on(edition: str, *command: str, expected: int = 0) -> str:
+    return with_build("STILLSPIN_EDITION", edition, *command, expected=expected)
 
 
 def switch_on(edition: str, memory: Path, *lines: str) -> list[str]:

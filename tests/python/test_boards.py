@@ -2,13 +2,12 @@
 
 import importlib.util
 import json
-import os
-import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
 
 import pytest
+from by_edition import with_build
 
 ROOT = Path(__file__).resolve().parents[2]
 OTHER = "ipm"
@@ -29,15 +28,7 @@ tables = load_tables()
 
 
 def on(board: str, *command: str, expected: int = 0) -> str:
-    done = subprocess.run(
-        [sys.executable, *command],
-        env={**os.environ, "STILLSPIN_BOARD": board},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == expected, done.stderr
-    return done.stdout + done.stderr
+    return with_build("STILLSPIN_BOARD", board, *command, expected=expected)
 
 
 def test_the_book_has_the_tables_of_the_files() -> None:
