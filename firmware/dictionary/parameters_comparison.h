@@ -11,10 +11,10 @@ PARAMETER(173, hysteresis_frequency, KHZ, 16, 2, 0, 2500, 1000, ALWAYS,
 PARAMETER(174, slice_time, US, 16, 2, 500, 2000, 500, STOPPED,
           "interval of the hysteresis' decisions, a whole part of 100 us")
 
-// The paper's ZVV
+// The paper's scheme
 PARAMETER(311, paper_terms, NONE, 0, 0, 0, 127, 127, STOPPED,
-          "sum of 1 rotation in D, 2 integral fed back, 4 drops, 8 load, 16 turns in blend, "
-          "32 trajectory, 64 residuals in AVV")
+          "terms of the paper's scheme, added up: 1 rotation, 2 integral fed back, 4 drops, 8 load, 16 turns, "
+          "32 trajectory, 64 residuals")
 
 // Position by the stator flux
 PARAMETER(300, flux_cutoff, RAD_PER_S, 8, 1, 20, 1500, 20, STOPPED,
