@@ -20,8 +20,12 @@ CHANGES = 40  # of each file
 
 
 def made(kind):
+    """A motor or a profile at the scales of motor A's board; a scenario does not say on which board it runs."""
     native = core.load()
-    return file_schema.schema(kind, core.plant_schema(native), core.parameters(native))
+    known = core.parameters(native)
+    if kind == "scenario":
+        known = core.at_some_scale(known)
+    return file_schema.schema(kind, core.plant_schema(native), known)
 
 
 @pytest.fixture(scope="module")
