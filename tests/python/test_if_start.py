@@ -13,6 +13,10 @@ native = pytest.importorskip("stillspin._core", reason="the native module is not
 
 FLUX_ALONE = {"flux_low": 20.0, "flux_high": 40.0}
 VECTOR = ("if_current", "if_acceleration", "if_speed")  # at the drive's defaults for all, as the bounds below are
+# From the first period on that the source is used, deg: what the current's step at the transfer does to a drive that has
+# the nameplate alone. Largest of 64 starts of each case below (32 angles, both ways): 5.2 by source 6 and 4.7 by the
+# others of motor A, 1.9, 2.4.
+LARGEST = {"A": 5.5, "B": 2.2, "B-SPM": 2.6}
 BRAKE = {"coulomb_friction": 1.0, "stiction": 1.0}  # N m
 
 
@@ -59,8 +63,7 @@ def test_the_source_takes_over_from_the_vector(motor, source, parameters, angle,
     signals = dict(result.signals)
     error = np.abs(metrics.position_error(signals))
     time, turned = np.asarray(signals["time"]), np.asarray(signals["true_speed"])
-    # From the first period on that it is used. Motor A's largest of 64 starts (16 angles and ways, 4 methods) is 4.7.
-    assert np.max(error) < 5.0
+    assert np.max(error) < LARGEST[motor]
     assert np.max(error[time > 0.7]) < 1.5
     assert np.max(np.abs(turned - speed)) < 15.0
     assert np.max(np.abs(turned[time > 0.7] - speed)) < 5.0
