@@ -13,9 +13,9 @@ native = pytest.importorskip("stillspin._core", reason="the native module is not
 
 FLUX_ALONE = {"flux_low": 20.0, "flux_high": 40.0}
 VECTOR = ("if_current", "if_acceleration", "if_speed")  # at the drive's defaults for all, as the bounds below are
-# From the first period on that the source is used, deg: what the current's step at the transfer does to a drive that has
-# the nameplate alone. Largest of 64 starts of each case below (32 angles, both ways): 5.2 by source 6 and 4.7 by the
-# others of motor A, 1.9, 2.4.
+# From the first period on that the source is used, deg: what the current's step at the transfer does to a drive that
+# has the nameplate alone. Largest of 64 starts of each case below (32 angles, both ways): 5.2 by source 6 and 4.7 by
+# the others of motor A, 1.9, 2.4.
 LARGEST = {"A": 5.5, "B": 2.2, "B-SPM": 2.6}
 BRAKE = {"coulomb_friction": 1.0, "stiction": 1.0}  # N m
 
