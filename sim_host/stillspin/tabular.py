@@ -32,7 +32,15 @@ def arrow(columns: Mapping[str, Any], units: Mapping[str, str], about: Mapping[s
         for name, data in arrays.items()
     ]
     schema = pa.schema(fields, metadata={ABOUT: json.dumps(about, sort_keys=True)})
-    return pa.table([pa.array(data) for data in arrays.values()], schema=schema)
+    return pa.table([_column(pa, data) for data in arrays.values()], schema=schema)
+
+
+def _column(pa: Any, data: Any) -> Any:
+    """Numbers go without `pa.array`, which loads pandas wherever that is installed; bits are stored otherwise."""
+    if data.dtype.kind not in "fiu":
+        return pa.array(data)
+    buffer = pa.py_buffer(data if data.flags.c_contiguous else data.copy())
+    return pa.Array.from_buffers(pa.from_numpy_dtype(data.dtype), data.size, [None, buffer])
 
 
 def frame(columns: Mapping[str, Any], units: Mapping[str, str], about: Mapping[str, Any]) -> Any:

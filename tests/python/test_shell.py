@@ -61,6 +61,19 @@ def test_a_command_loads_no_other():
     assert not loaded & {"cantools", "rich", "stillspin.commands.board", "stillspin.commands.hil"}
 
 
+def test_a_run_with_its_pictures_loads_neither_pandas_nor_pyplot(tmp_path):
+    """They take as long as the run itself."""
+    pytest.importorskip("stillspin._core", reason="the native module is not built")
+    words = ["run", "A18a", "--profile", "ideal", "--seed", "1", "--out", str(tmp_path)]
+    asked = f"import sys; from stillspin import cli; cli.app({words!r}, standalone_mode=False)"
+    code = f"{asked}; print(*sorted(sys.modules), file=sys.stderr)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=300)
+    loaded = set(done.stderr.split())
+    assert "matplotlib.figure" in loaded
+    assert not loaded & {"pandas", "matplotlib.pyplot"}
+    assert "<svg" in (tmp_path / "report.html").read_text()
+
+
 def test_a_bare_group_shows_its_help(call, monkeypatch):
     group = typer.main.get_command(cli.app).commands["params"]
     monkeypatch.setattr(group, "invoke_without_command", False)

@@ -5,15 +5,12 @@ from __future__ import annotations
 import io
 
 import matplotlib as mpl
-
-mpl.use("Agg")  # before pyplot: no display is needed
-
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
 from stillspin.cases.effects import ALONE, WITHOUT
 from stillspin.measure.figures import Result
+from stillspin.report.canvas import subplots
 from stillspin.report.explanation import Explanation
 from stillspin.report.page import unit_text
 from stillspin.report.style import COLOURS, STYLE, WIDTH
@@ -24,14 +21,13 @@ _ROW = 0.3  # in of height for an effect
 def draw(found: Explanation) -> str:
     """The picture as SVG text."""
     figures = found.figures
-    with plt.rc_context(STYLE):
+    with mpl.rc_context(STYLE):
         height = len(figures) * (1.1 + _ROW * len(found.effects))
-        canvas, axes = plt.subplots(len(figures), 1, figsize=(WIDTH, height), squeeze=False, layout="constrained")
+        canvas, axes = subplots(len(figures), figsize=(WIDTH, height), squeeze=False)
         for panel, figure in zip(axes[:, 0], figures, strict=True):
             _panel(panel, found, figure)
         file = io.StringIO()
         canvas.savefig(file, format="svg", metadata={"Date": None})
-        plt.close(canvas)
     return file.getvalue()
 
 

@@ -8,15 +8,9 @@ from __future__ import annotations
 import io
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 
 import matplotlib as mpl
-
-mpl.use("Agg")  # before pyplot: no display is needed
-
-import matplotlib.pyplot as plt
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 
@@ -24,6 +18,7 @@ from stillspin.cases.scenario import Plot, Scenario, Window
 from stillspin.core import Signals
 from stillspin.measure import pieces
 from stillspin.measure.pieces import Extras, Floats
+from stillspin.report.canvas import subplots
 from stillspin.report.panels import PANELS, Panel
 from stillspin.report.special_plots import SPECIAL, Shown
 from stillspin.report.style import COLOURS, COLUMNS, PANEL_HEIGHT, ROLES, RUN_COLOURS, STYLE, WIDTH
@@ -47,19 +42,12 @@ def draw(
         canvas = special(Shown(scenario, shown, extras or {})) if special else _stack(plot, scenario, shown)
         text = io.StringIO()
         canvas.savefig(text, format="svg", metadata={"Date": None, "Creator": "stillspin"})
-        plt.close(canvas)
     return text.getvalue()
 
 
 def _stack(plot: Plot, scenario: Scenario, shown: Mapping[str, Signals]) -> Canvas:
-    canvas, grid = plt.subplots(
-        len(plot.panels),
-        1,
-        sharex=True,
-        squeeze=False,
-        figsize=(WIDTH, 0.6 + PANEL_HEIGHT * len(plot.panels)),
-        layout="constrained",
-    )
+    height = 0.6 + PANEL_HEIGHT * len(plot.panels)
+    canvas, grid = subplots(len(plot.panels), sharex=True, squeeze=False, figsize=(WIDTH, height))
     for name, axes in zip(plot.panels, grid[:, 0], strict=True):
         _panel(axes, PANELS[name], plot, scenario, shown)
     grid[-1, 0].set_xlabel("time since the end of the start procedure (s)")
@@ -160,13 +148,11 @@ def thinned(time: Floats, values: Floats, columns: int = COLUMNS) -> tuple[Float
     if time.size <= 4 * columns:
         return time, values
     edges = np.linspace(0, time.size, columns + 1).astype(int)
-    keep: list[int] = []
-    for first, last in pairwise(edges.tolist()):
-        part = values[first:last]
-        if np.isnan(part).all():
-            keep.append(first)
-            continue
-        ends = {int(np.nanargmin(part)), int(np.nanargmax(part)), *np.flatnonzero(np.isnan(part)).tolist()}
-        keep.extend(first + place for place in sorted(ends))
-    index: npt.NDArray[np.int64] = np.array(keep, dtype=np.int64)
-    return time[index], values[index]
+    column = np.repeat(np.arange(columns), np.diff(edges))
+    gaps = np.isnan(values)
+    # Sorted within each column, NaN last: the smallest is the first, the largest the first of the other way round.
+    lowest = np.lexsort((values, column))[edges[:-1]]
+    highest = np.lexsort((-values, column))[edges[:-1]]
+    keep = gaps & ~gaps[lowest][column]  # of a column of gaps alone one is enough
+    keep[lowest] = keep[highest] = True
+    return time[keep], values[keep]

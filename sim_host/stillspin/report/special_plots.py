@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
@@ -17,6 +16,7 @@ from stillspin.cases.scenario import Scenario
 from stillspin.core import Signals
 from stillspin.measure import bound, deviation_sweep, flux_metrics, metrics, pieces, ripple, speed_profile, waveforms
 from stillspin.measure.pieces import Extras
+from stillspin.report.canvas import subplots
 from stillspin.report.style import COLOURS, RUN_COLOURS, WIDTH
 
 _DASHED = (0, (4, 2))
@@ -45,7 +45,7 @@ class Shown:
 def trajectories(shown: Shown) -> Canvas:
     """The current vector's path in the stationary frame, one square per run, all to the same scale."""
     count = max(1, len(shown.records))
-    canvas, grid = plt.subplots(1, count, squeeze=False, figsize=(WIDTH, WIDTH / 2.3), layout="constrained")
+    canvas, grid = subplots(1, count, squeeze=False, figsize=(WIDTH, WIDTH / 2.3))
     paths = {name: metrics.current_vector(signals) for name, signals in shown.records.items()}
     limit = 1.08 * max((float(np.max(np.hypot(*path))) for path in paths.values()), default=1.0)
     for axes, (name, (alpha, beta)) in zip(_flat(grid), paths.items(), strict=False):
@@ -67,7 +67,7 @@ def _flat(grid: Any) -> list[Axes]:
 
 def sweeps(shown: Shown) -> Canvas:
     """The q-axis current deviation over the angle error, faint: with the drops; dashed: derived from the machine."""
-    canvas, axes = plt.subplots(figsize=(WIDTH, WIDTH / 2.2), layout="constrained")
+    canvas, axes = subplots(figsize=(WIDTH, WIDTH / 2.2))
     for number, (name, signals) in enumerate(shown.records.items()):
         colour = RUN_COLOURS[number % len(RUN_COLOURS)]
         machine = shown.extras.get(name, pieces.NOTHING_ELSE).machine
@@ -92,9 +92,7 @@ def spectra(shown: Shown) -> Canvas:
     """Phase current up to 50 kHz in percent of its fundamental, and three electrical periods of it beside."""
     looked = shown.looked()
     rows = max(1, len(looked))
-    canvas, grid = plt.subplots(
-        rows, 2, squeeze=False, figsize=(WIDTH, 2.3 * rows), layout="constrained", sharey="col", width_ratios=[1.0, 1.6]
-    )
+    canvas, grid = subplots(rows, 2, squeeze=False, figsize=(WIDTH, 2.3 * rows), sharey="col", width_ratios=[1.0, 1.6])
     for (left, right), (name, extras) in zip(grid, looked.items(), strict=False):
         raster = extras.waveform["raster"]
         left.set(ylabel="$i_a$ (A)", title=shown.title(name))
@@ -120,9 +118,7 @@ def gates(shown: Shown) -> Canvas:
     """One period between the vectors 110 and 010: gate signals, switching states, phase current and its samples."""
     looked = shown.looked()
     columns = max(1, len(looked))
-    canvas, grid = plt.subplots(
-        2, columns, squeeze=False, figsize=(WIDTH, 4.2), layout="constrained", sharex=True, height_ratios=[1.0, 1.6]
-    )
+    canvas, grid = subplots(2, columns, squeeze=False, figsize=(WIDTH, 4.2), sharex=True, height_ratios=[1.0, 1.6])
     for column, (name, extras) in enumerate(looked.items()):
         pattern = waveforms.sector_two(extras.waveform)
         grid[0, column].set_title(shown.title(name))
@@ -171,9 +167,7 @@ def ripples(shown: Shown) -> Canvas:
     """Twelve periods of a phase current about its mean, and the spectrum of the ripple beside; shaded: audible."""
     looked = shown.looked()
     rows = max(1, len(looked))
-    canvas, grid = plt.subplots(
-        rows, 2, squeeze=False, figsize=(WIDTH, 1.7 * rows), layout="constrained", sharex="col", sharey="col"
-    )
+    canvas, grid = subplots(rows, 2, squeeze=False, figsize=(WIDTH, 1.7 * rows), sharex="col", sharey="col")
     for (left, right), (name, extras) in zip(grid, looked.items(), strict=False):
         raster = extras.waveform["raster"]
         time = raster["time"] - raster["time"][0]
@@ -195,7 +189,7 @@ def errors_over_speed(shown: Shown) -> Canvas:
 
     Below them the Cramér-Rao bound of the rms error, from the windows of the scenario's first run.
     """
-    canvas, axes = plt.subplots(figsize=(WIDTH, WIDTH / 2.4), layout="constrained")
+    canvas, axes = subplots(figsize=(WIDTH, WIDTH / 2.4))
     for number, (name, signals) in enumerate(shown.records.items()):
         colour = RUN_COLOURS[number % len(RUN_COLOURS)]
         holds = speed_profile.holds(signals, metrics.position_error(signals))
@@ -237,7 +231,7 @@ def _bound(axes: Axes, shown: Shown) -> None:
 
 def flux_limits(shown: Shown) -> Canvas:
     """Stator flux over the current: of the firmware's references, and the limit up to which (27) has a root."""
-    canvas, axes = plt.subplots(figsize=(WIDTH, WIDTH / 2.4), layout="constrained")
+    canvas, axes = subplots(figsize=(WIDTH, WIDTH / 2.4))
     for number, (name, signals) in enumerate(shown.records.items()):
         extras = shown.extras.get(name, pieces.NOTHING_ELSE)
         if not extras.machine:
@@ -257,7 +251,7 @@ def flux_limits(shown: Shown) -> Canvas:
 
 def load_angles(shown: Shown) -> Canvas:
     """The load angle over the current: estimated, and dashed the true one; a colour for each run."""
-    canvas, axes = plt.subplots(figsize=(WIDTH, WIDTH / 2.2), layout="constrained")
+    canvas, axes = subplots(figsize=(WIDTH, WIDTH / 2.2))
     for number, (name, signals) in enumerate(shown.records.items()):
         colour = RUN_COLOURS[number % len(RUN_COLOURS)]
         current = np.hypot(pieces.as_floats(signals["true_i_d"]), pieces.as_floats(signals["true_i_q"]))
@@ -282,7 +276,7 @@ def error_maps(shown: Shown) -> Canvas:
         for hold in held:
             if hold.followed:
                 peaks[speeds.index(hold.reference), column] = hold.peak
-    canvas, axes = plt.subplots(figsize=(WIDTH, 1.6 + 0.42 * len(speeds)), layout="constrained")
+    canvas, axes = subplots(figsize=(WIDTH, 1.6 + 0.42 * len(speeds)))
     if not speeds:
         return canvas
     shade = np.clip(peaks, *_MAPPED)

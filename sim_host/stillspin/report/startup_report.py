@@ -95,10 +95,11 @@ def _figures(group: Sequence[Outcome]) -> dict[str, float | int]:
 def _draw(path: Path, outcomes: Sequence[Outcome]) -> None:
     """Motion backwards and angle error over the initial angle, a column for each way that was run."""
     ways = [way for way in WAYS if any(item.case.way == way for item in outcomes)]
-    extras.need("matplotlib").use("Agg")  # before pyplot: no display is needed
-    plt = extras.need("matplotlib.pyplot")
-    with plt.rc_context(STYLE):
-        canvas, grid = plt.subplots(2, len(ways), figsize=(WIDTH, 5.0), sharex=True, squeeze=False)
+    mpl = extras.need("matplotlib")
+    from stillspin.report.canvas import subplots  # noqa: PLC0415 - needs it as well
+
+    with mpl.rc_context(STYLE):
+        canvas, grid = subplots(2, len(ways), figsize=(WIDTH, 5.0), layout=None, sharex=True, squeeze=False)
         for column, way in enumerate(ways):
             group = [item for item in outcomes if item.case.way == way]
             grid[0][column].set_title(_TITLES[way])
@@ -110,7 +111,6 @@ def _draw(path: Path, outcomes: Sequence[Outcome]) -> None:
         grid[1][0].set_ylabel("angle error at RUN, ° el.")
         canvas.tight_layout()
         canvas.savefig(path, metadata={"Date": None})
-        plt.close(canvas)
 
 
 def _scatter(axes: Axes, group: Sequence[Outcome], values: Sequence[float], colour: str) -> None:

@@ -53,7 +53,7 @@ def write_waveform(path: Path, waveform: Mapping[str, Mapping[str, Any]], about:
 
 def read_waveform(path: Path) -> Waveform:
     """Read what `write_waveform` wrote: table -> name -> values."""
-    stored = _parquet().read_table(path)
+    stored = _parquet().ParquetFile(path).read()
     waveform: Waveform = {}
     for column in stored.column_names:
         table, _, name = column.partition(".")
@@ -73,6 +73,7 @@ def _stored(name: str, data: Any) -> Any:
 
 def read(path: Path) -> Record:
     """Read a run written by `write`."""
-    table = _parquet().read_table(path)
-    signals = {name: table.column(name).to_numpy() for name in table.column_names}
+    table = _parquet().ParquetFile(path).read()
+    # Over DLPack: Arrow's own way loads pandas wherever that is installed.
+    signals = {name: np.from_dlpack(table.column(name).combine_chunks()) for name in table.column_names}
     return Record(signals, json.loads((table.schema.metadata or {}).get(tabular.ABOUT, b"{}")))
