@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 from matplotlib.figure import Figure
 
 
 def subplots(
-    rows: int = 1, columns: int = 1, *, figsize: tuple[float, float], layout: str | None = "constrained", **options: Any
+    rows: int = 1, columns: int = 1, *, figsize: tuple[float, float], layout: Literal["constrained"] | None = "constrained", **options: Any
 ) -> tuple[Figure, Any]:
     """A figure and its axes, as `matplotlib.pyplot.subplots` returns them.
 
