@@ -8,7 +8,12 @@ from matplotlib.figure import Figure
 
 
 def subplots(
-    rows: int = 1, columns: int = 1, *, figsize: tuple[float, float], layout: Literal["constrained"] | None = "constrained", **options: Any
+    rows: int = 1,
+    columns: int = 1,
+    *,
+    figsize: tuple[float, float],
+    layout: Literal["constrained"] | None = "constrained",
+    **options: Any,
 ) -> tuple[Figure, Any]:
     """A figure and its axes, as `matplotlib.pyplot.subplots` returns them.
 
