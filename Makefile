@@ -15,6 +15,9 @@ PYTHON := .venv/bin/python
 DEMO := A10 A15 A16 A18a A18b A18c
 DEMO_OUT := out/demo
 PICTURED := A10 A11 A16 A18b
+PICTURED_A := A10 A11 A15 A16
+PICTURED_B := B09 B14 B15 B16 B20
+LOW_PASS := toolchain/book/cases/paper_flux_low_pass.toml --set flux_cutoff=78 --set inverter.switch_threshold=0.7 --set inverter.diode_threshold=0.7
 PICTURES_OUT := out/pictures
 
 # A Python path set for something else must not reach into .venv; nor that no compiled module is kept, for then every start
@@ -124,6 +127,13 @@ pictures: build ## renew the pictures of README and book, docs/images
 	@.venv/bin/stillspin reproduce $(PICTURED) --no-paper-scheme --no-nameplate --out $(PICTURES_OUT)
 	@$(PYTHON) toolchain/overview.py $(PICTURES_OUT) docs/images/bench.png
 	@$(PYTHON) toolchain/tuning_pictures.py
+	@for id in $(PICTURED_A); do \
+	  .venv/bin/stillspin run $$id --scheme paper --profile ideal --set adc.noise=1.2 --no-plots --out $(PICTURES_OUT)/$$id || [ $$? = 1 ] || exit 2; done
+	@for id in $(PICTURED_B); do \
+	  .venv/bin/stillspin run $$id --scheme paper_flux --profile ideal --no-plots --out $(PICTURES_OUT)/$$id || [ $$? = 1 ] || exit 2; done
+	@for id in B14 B15 B16; do \
+	  .venv/bin/stillspin run $$id --scheme $(LOW_PASS) --profile ideal --no-plots --out $(PICTURES_OUT)/low-pass/$$id || [ $$? = 1 ] || exit 2; done
+	@$(PYTHON) toolchain/papers_pictures.py $(PICTURES_OUT) docs/images
 	@STILLSPIN_PICTURES=docs/images $(PYTHON) -m pytest -q -c sim_host/pyproject.toml --rootdir . tests/python/test_tune_on_board.py tests/python/test_notebook.py
 	@$(PYTHON) toolchain/keep.py pictures
 

@@ -136,6 +136,42 @@ TEST(ZvvTerms, WithKpByTheRuleNeitherSpeedNorAccelerationTurnsTheAngle) {
   }
 }
 
+// On a shaft at rest whose windows have so much noise along q, rad of angle error each: what the angle has of it.
+double left_of_noise(double kp, double ki, double noise) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  zvv_config_t c = config(ZVV_ROTATION | ZVV_INTEGRAL);
+  c.kp_q30 = raw(kp * kPeriod, 30);
+  c.ki_q40 = raw(ki * kPeriod * kPeriod, 40);
+  const double id = 8.0, theta = 0.4;
+  const double kq = (m.ld - m.lq) / (m.ld * m.lq) * m.rs * id;
+  std::mt19937 random(3);
+  std::normal_distribution<> each(0.0, noise * std::fabs(kq) * kPeriod);
+  zvv_t s = {};
+  zvv_preset(&s, bam(theta), 0, 0);
+  double squares = 0.0;
+  const int count = 200000;
+  for (int n = 0; n < count; ++n) {
+    Window seen = window_at(m, theta, 0.0, Vector{id, 0.0}.turned(rad(s.angle_bam)), {0, 0}, 5000, 7000);
+    seen.slope = seen.slope + Vector{0.0, each(random)}.turned(theta);
+    const Input in(model, {seen});
+    (void)zvv_step(&s, &c, in.get(), raw(id, 20));
+    squares += std::pow(wrapped(theta - rad(s.angle_bam)), 2);
+  }
+  return std::sqrt(squares / count) / noise;
+}
+
+// sqrt(T (Kp^2 + Ki) / (2 (Kp + Ki c))), and with Kp by the rule sqrt(T / 2c).
+TEST(ZvvTerms, TheNoiseOfTheAngleIsWhatGainsAndWindowsMakeOfIt) {
+  const double by_rule = gain_by_the_rule();
+  const double c = 1.0 / by_rule;
+  for (const double share : {0.5, 1.0, 2.0}) {
+    const double kp = share * by_rule, ki = 85.0 * by_rule;
+    const double expected = std::sqrt(kPeriod * (kp * kp + ki) / (2.0 * (kp + ki * c)));
+    EXPECT_NEAR(left_of_noise(kp, ki, 0.5) / expected, 1.0, 0.06) << share;
+  }
+}
+
 // w Ld / R, physics section 3: 8.8 degrees at 10 rad/s, and this is what the term is for.
 TEST(ZvvTerms, WithoutTheRotationsTermTheAngleIsOff) {
   const Motor m;

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import fake_core
-from stillspin import resources
+from stillspin import core, resources
 from stillspin.cases import profile, scenario_file, variant
 from stillspin.errors import InputError
 from stillspin.measure import figures
@@ -135,6 +135,17 @@ def test_a_scheme_is_of_the_scenarios_motor() -> None:
         assert {variant.scheme(name).motor for name in schemes} <= {data["motor"]}, identifier
         named |= schemes
     assert {"paper", "paper_b"} <= named
+
+
+def test_every_scenario_of_its_motor_can_be_set_up_with_the_flux_papers_scheme() -> None:
+    native = core.load()
+    known = core.parameters(native)
+    plate = profile.load("ideal", core.plant_schema(native), known, "B").parameters
+    plate = {**plate, **variant.scheme("paper_flux").checked(known)}
+    runs = [run for one in map(scenario_file.load, scenario_file.campaign_ids(["B"])) for run in one.runs]
+    assert {"flux_beside", "position_source"} <= set().union(*(run.parameters for run in runs))
+    for run in runs:
+        native.check_parameters({**plate, **{name: float(value) for name, value in run.parameters.items()}})
 
 
 def test_defaults_are_joined_with_what_a_run_says(tmp_path):

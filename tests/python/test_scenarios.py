@@ -294,6 +294,8 @@ def test_the_papers_scheme_brings_a_rotor_through_its_transition_and_back(
     transition, steady = errors("--set", "adc.noise=1.2")
     assert 0.3 < transition < 8.0
     assert 0.3 < steady < 4.0
+    _, steady = errors("--set", "adc.noise=0.2")
+    assert 0.1 < steady < 2.0  # a fifth of a digit of noise, and it is gone
     blind = stillspin(*words, "--set", "adc.noise=1.2", "--set", "paper_terms=111")
     assert "broken off: the shaft turned at" in blind.stdout + blind.stderr
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,18 @@ OVER_SPEED = ("S08", "S09", "S10")
 def gather(out: Path) -> dict[str, Any]:
     """What tables are made of, by the name of the file that has it."""
     return dict(_files(out))
+
+
+def worst(each: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Of the scenarios' figures of several seeds the largest, none where a run was lost, and with how many that was."""
+    found: dict[str, Any] = {}
+    for scenario, figures in each[0].items():
+        for name, figure in figures.items():
+            values = [one[scenario][name]["value"] for one in each]
+            lost = values.count(None)
+            largest = None if lost else max(values, key=abs)
+            found.setdefault(scenario, {})[name] = {"value": largest, "lost": lost, "unit": figure["unit"]}
+    return found
 
 
 def _files(out: Path) -> Iterator[tuple[str, Any]]:
