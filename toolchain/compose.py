@@ -8,17 +8,18 @@ a feature.toml, or a path from where the list is. What a feature.toml may say:
 
     needs       features without which this one does not work
     headers     what declares the rows: in its folder, or from the root
-    parameters  numbers of the parameters that are its own
-    signals     names of the signals that are its own
     words       kinds of words (text/word_list.h) that are its own
     instead     by source outside of the folder that only this feature has a use for: what an image without it has
     rows        by table: what stands there, with its place: a number, smaller ones come first; commands of the console
                 have theirs from its list. What console and link alone ask for is dropped without them, and with it what
                 a feature's commands*.c and requests*.c are for
 
+What else is its own stands in lists of its folder (row_lists.py): parameters, signals, requests, faults, texts.
+
 What has not changed is not written again. FOLDER belongs into the include path before the tree.
 """
 
+import hashlib
 import re
 import sys
 import tomllib
@@ -29,14 +30,15 @@ from pathlib import Path
 from typing import Any
 
 import pack_text
+import row_lists
 import word_code
+from row_lists import ROOT, Lists, rows_of
 
-ROOT = pack_text.ROOT
 EDITIONS, FEATURE = "firmware/editions", "feature.toml"
-PARAMETERS, SIGNALS = "firmware/dictionary/parameter_list.h", "firmware/dictionary/signal_list.h"
-FAULTS = "firmware/**/fault_list.h"
+PARAMETERS, SIGNALS, FAULTS, REQUESTS = "parameter_list.h", "signal_list.h", "fault_list.h", "request_list.h"
 KINDS, KIND = "firmware/text/catalogue.h", re.compile(r"CATALOGUE_([A-Z]+) = (\d+)")
 TEXTS, CMAKE = "packed_text_table.c", "composed.cmake"
+OF_COMMAND = 0x100  # REQUEST_OF_COMMAND, firmware/link/request_rows.h
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,7 @@ class Table:
 
 
 SERVICE, STATUS = "firmware/interfaces/service.h", "firmware/api/status.h"
-COMMANDS = [row[0] for row in pack_text.rows((ROOT / "firmware/console/command_list.h").read_text("utf-8"), "COMMAND")]
+COMMANDS = [row[0] for row in row_lists.rows((ROOT / "firmware/console/command_list.h").read_text("utf-8"), "COMMAND")]
 TABLES = {
     "position_sources": Table("const position_source_t", "firmware/interfaces/source.h", "places", 9, prefix=""),
     "drive_states": Table("const state_t", "firmware/interfaces/state.h", "places", 8, prefix=""),
@@ -95,18 +97,30 @@ class Feature:
     folder: Path
     needs: tuple[str, ...] = ()
     headers: tuple[str, ...] = ()
-    parameters: tuple[int, ...] = ()
-    signals: tuple[str, ...] = ()
     words: tuple[str, ...] = ()
     instead: dict[str, str] = field(default_factory=dict)
     rows: dict[str, Any] = field(default_factory=dict)
 
     @property
+    def parameters(self) -> dict[int, str]:
+        """Names of its own parameters by their numbers."""
+        return {int(row[0]): row[1] for row in rows_of(self.folder, PARAMETERS)}
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """Names of its own signals."""
+        return tuple(row[0] for row in rows_of(self.folder, SIGNALS))
+
+    @property
     def faults(self) -> tuple[int, ...]:
-        """Numbers of the faults that only it brings about: those of its list."""
-        file = self.folder / "fault_list.h"
-        rows = pack_text.rows(file.read_text(encoding="utf-8"), "FAULT") if file.exists() else []
-        return tuple(int(row[0]) for row in rows)
+        """Numbers of the faults that only it brings about."""
+        return tuple(int(row[0]) for row in rows_of(self.folder, FAULTS))
+
+    @property
+    def requests(self) -> tuple[int, ...]:
+        """Numbers of its requests, those of commands as REQUEST_OF_COMMAND has them."""
+        rows = rows_of(self.folder, REQUESTS)
+        return tuple(int(number, 0) + (OF_COMMAND if kind == "COMMAND" else 0) for kind, _, number in rows)
 
     def places(self, table: str) -> list[tuple[int, str]]:
         """Its rows in a table with their places."""
@@ -133,6 +147,14 @@ class Edition:
         if asked_by and asked_by not in {feature.name for feature in self.features}:
             return []
         return [(feature, own) for feature in self.features if (own := feature.places(table))]
+
+    def outside(self, root: Path = ROOT) -> list[Feature]:
+        """The features that are not in the tree."""
+        return [feature for feature in self.features if not feature.folder.is_relative_to(root / "firmware")]
+
+    def lists(self, root: Path = ROOT) -> Lists:
+        """The rows of the tree, and of its features outside of it."""
+        return Lists(root, tuple(feature.folder for feature in self.outside(root)))
 
 
 def feature_of(name: str, folder: Path) -> Feature:
@@ -224,32 +246,54 @@ def runs(rows: Iterable[int]) -> list[tuple[int, int]]:
     return found
 
 
+def looks_text(edition: Edition, root: Path) -> str:
+    """The C file with how the signals are looked at (firmware/drive/steps.h)."""
+    gone = {name for feature in left_out(edition, root) for name in feature.signals}
+    signals = [row[0] for row in edition.lists(root).rows(SIGNALS, "SIGNAL")]
+    looks = ["look_at_nothing" if name in gone else f"look_at_{name}" for name in signals]
+    return "\n".join(
+        [
+            f"// Made by toolchain/compose.py: the signals of the edition {edition.name}.",
+            "",
+            '#include "firmware/drive/steps.h"',
+            "",
+            *(f"signal_look_t {look};" for look in dict.fromkeys(looks)),
+            "signal_look_t* const edition_signal_looks[] = {",
+            *(f"    {look}," for look in looks),
+            "};",
+            "",
+        ]
+    )
+
+
 def left_out_text(edition: Edition, root: Path) -> str:
     """The C file with what the edition has not (firmware/base/edition.h).
 
     Raises:
-        ValueError: a feature names a parameter, a signal, a fault or a kind of words that does not exist.
+        ValueError: a feature names a kind of words that does not exist.
     """
-    parameters = [int(row[0]) for row in pack_text.rows(pack_text.whole(root, PARAMETERS), "PARAMETER")]
-    signals = [row[0] for row in pack_text.rows(pack_text.whole(root, SIGNALS), "SIGNAL")]
-    faults = [int(row[0]) for row in pack_text.rows_of(root, FAULTS, "FAULT")]
+    lists = edition.lists(root)
+    parameters = [int(row[0]) for row in lists.rows(PARAMETERS, "PARAMETER")]
+    signals = [row[0] for row in lists.rows(SIGNALS, "SIGNAL")]
+    faults = [int(row[0]) for row in lists.rows(FAULTS, "FAULT")]
     kinds = dict(KIND.findall((root / KINDS).read_text(encoding="utf-8")))
     gone = left_out(edition, root)
 
-    def rows(what: str, names: Iterable[Any], known: list[Any]) -> str:
-        found = runs(known.index(name) for name in names)
+    def rows(what: str, numbers: Iterable[int]) -> str:
+        found = runs(numbers)
         text = "".join(f"{{{first}, {count}}}, " for first, count in found)
         return f"const rows_t edition_{what}_left_out[] = {{{text}{{0, 0}}}};"
 
     try:
         mask = sum(1 << int(kinds[word]) for feature in gone for word in feature.words)
-        tables = [
-            rows("parameters", (number for feature in gone for number in feature.parameters), parameters),
-            rows("signals", (name for feature in gone for name in feature.signals), signals),
-            rows("faults", (number for feature in gone for number in feature.faults), faults),
-        ]
-    except (KeyError, ValueError) as error:
+    except KeyError as error:
         raise ValueError(f"{FEATURE}: {error}") from error
+    tables = [
+        rows("parameters", (parameters.index(number) for feature in gone for number in feature.parameters)),
+        rows("signals", (signals.index(name) for feature in gone for name in feature.signals)),
+        rows("faults", (faults.index(number) for feature in gone for number in feature.faults)),
+        rows("requests", (number for feature in gone for number in feature.requests)),
+    ]
     return "\n".join(
         [
             f"// Made by toolchain/compose.py: what the edition {edition.name} has not.",
@@ -267,10 +311,7 @@ def left_out_text(edition: Edition, root: Path) -> str:
 def needless_texts(edition: Edition, root: Path) -> set[str]:
     """What the edition never says: of the features that it has not all but the names, which it refuses."""
     gone = left_out(edition, root)
-    numbers = {str(number) for feature in gone for number in feature.parameters}
-    rows = pack_text.rows(pack_text.whole(root, PARAMETERS), "PARAMETER")
-    parameters = [row[1] for row in rows if row[0] in numbers]
-    found = {f"TEXT_PARAMETER_{name}" for name in parameters}
+    found = {f"TEXT_PARAMETER_{name}" for feature in gone for name in feature.parameters.values()}
     found |= {f"TEXT_SIGNAL_{name}" for feature in gone for name in feature.signals}
     found |= {f"TEXT_{what}_{number}" for feature in gone for number in feature.faults for what in ("FAULT", "REMEDY")}
     answered = {COMMANDS[place] for _, own in edition.rows("commands") for place, _ in own}
@@ -281,9 +322,9 @@ def needless_texts(edition: Edition, root: Path) -> set[str]:
     for feature in gone:
         list_of_phrases = feature.folder / "phrase_list.h"
         if list_of_phrases.exists():
-            said = pack_text.rows(list_of_phrases.read_text(encoding="utf-8"), "PHRASE")
+            said = row_lists.rows(list_of_phrases.read_text(encoding="utf-8"), "PHRASE")
             found |= {f"SAY_{row[0]}" for row in said}
-    return found | {name for name in pack_text.texts(root) if name.startswith(kinds)}
+    return found | {name for name in pack_text.texts(edition.lists(root)) if name.startswith(kinds)}
 
 
 def left_out(edition: Edition, root: Path = ROOT) -> list[Feature]:
@@ -294,14 +335,16 @@ def left_out(edition: Edition, root: Path = ROOT) -> list[Feature]:
 
 def made(edition: Edition, root: Path = ROOT) -> dict[str, str]:
     """The files by their names in the folder."""
-    texts = pack_text.texts(root)
+    lists = edition.lists(root)
+    texts = pack_text.texts(lists)
     needless = needless_texts(edition, root)
     kept = ["" if name in needless else text for name, text in texts.items()]
     return {
         pack_text.NUMBERS: pack_text.numbers(list(texts)),
-        **pack_text.joined(root),
+        **lists.joined(),
         TEXTS: pack_text.pack(kept, sum(1 for name in texts if pack_text.NAME.match(name))),
         "left_out.c": left_out_text(edition, root),
+        "signal_looks.c": looks_text(edition, root),
         **{f"{name}.c": table_text(name, edition, root) for name in TABLES},
     }
 
@@ -330,9 +373,9 @@ def write_for_cmake(folder: Path, name: str) -> None:
     """The same, and what CMake has to know of it."""
     edition, features = read_edition(name), all_features()
     sources = write(folder, name)
-    known = {feature.name for feature in features}
-    outside = [feature for feature in edition.features if feature.name not in known]
-    files = [Path(__file__), Path(pack_text.__file__), Path(word_code.__file__), edition.file, *pack_text.files(ROOT)]
+    outside, lists = edition.outside(), edition.lists()
+    files = [*(Path(module.__file__) for module in (pack_text, row_lists, word_code)), Path(__file__), edition.file]
+    files += lists.files()
     files += [feature.folder / FEATURE for feature in (*features, *outside)]
     text = set_list("composed_sources", (path.resolve().as_posix() for path in sources))
     text += set_list("composed_from", (path.resolve().as_posix() for path in files))
@@ -340,6 +383,8 @@ def write_for_cmake(folder: Path, name: str) -> None:
     instead = [(ROOT / source).as_posix() for feature in left_out(edition) for source in feature.instead.values()]
     text += set_list("composed_instead", instead)
     text += set_list("composed_outside", (feature.folder.resolve().as_posix() for feature in outside))
+    dictionary = "".join(lists.text(name) for name in (PARAMETERS, SIGNALS, FAULTS))
+    text += set_list("composed_tables", [hashlib.sha256(dictionary.encode()).hexdigest()[:8]])
     write_one(folder / CMAKE, text)
 
 

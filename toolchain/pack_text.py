@@ -7,116 +7,43 @@ numbers are made here as well, so that the code that says something includes non
 
 import re
 from collections import Counter
-from collections.abc import Iterator
 from itertools import zip_longest
-from pathlib import Path
 
 import word_code
+from row_lists import TREE, Lists
 
-ROOT = Path(__file__).resolve().parent.parent
 NUMBERS = "firmware/text/text_numbers.h"
-# The lists (with ** those of every folder), the macro, which of its arguments is the text, and what its number is
-# called, by the arguments.
+# The lists, the macro, which of its arguments is the text, and what its number is called, by the arguments.
 LISTS = (
-    ("firmware/dictionary/parameter_list.h", "PARAMETER", 9, "TEXT_PARAMETER_{1}"),
-    ("firmware/dictionary/signal_list.h", "SIGNAL", 5, "TEXT_SIGNAL_{0}"),
-    ("firmware/text/catalogue_list.h", "WORDS", 2, "TEXT_{0}_{1}"),
-    ("firmware/**/fault_list.h", "FAULT", 2, "TEXT_FAULT_{0}"),
-    ("firmware/**/fault_list.h", "FAULT", 3, "TEXT_REMEDY_{0}"),
-    ("firmware/console/command_list.h", "COMMAND", 2, "TEXT_COMMAND_{0}"),
-    ("firmware/**/help_list.h", "HELP", 2, "TEXT_HELP_{0}_{1}"),
-    ("firmware/**/phrase_list.h", "PHRASE", 1, "SAY_{0}"),
-    ("firmware/dictionary/unit_list.h", "UNIT", 1, "TEXT_UNIT_{0}"),
-    ("firmware/console/command_list.h", "COMMAND", 1, "TEXT_COMMAND_ARGUMENTS_{0}"),
-    ("firmware/dictionary/parameter_list.h", "PARAMETER", 1, "TEXT_PARAMETER_NAME_{1}"),
-    ("firmware/dictionary/signal_list.h", "SIGNAL", 0, "TEXT_SIGNAL_NAME_{0}"),
-    ("firmware/console/command_list.h", "COMMAND", 0, "TEXT_COMMAND_NAME_{0}"),
+    ("parameter_list.h", "PARAMETER", 9, "TEXT_PARAMETER_{1}"),
+    ("signal_list.h", "SIGNAL", 5, "TEXT_SIGNAL_{0}"),
+    ("catalogue_list.h", "WORDS", 2, "TEXT_{0}_{1}"),
+    ("fault_list.h", "FAULT", 2, "TEXT_FAULT_{0}"),
+    ("fault_list.h", "FAULT", 3, "TEXT_REMEDY_{0}"),
+    ("command_list.h", "COMMAND", 2, "TEXT_COMMAND_{0}"),
+    ("help_list.h", "HELP", 2, "TEXT_HELP_{0}_{1}"),
+    ("phrase_list.h", "PHRASE", 1, "SAY_{0}"),
+    ("unit_list.h", "UNIT", 1, "TEXT_UNIT_{0}"),
+    ("command_list.h", "COMMAND", 1, "TEXT_COMMAND_ARGUMENTS_{0}"),
+    ("parameter_list.h", "PARAMETER", 1, "TEXT_PARAMETER_NAME_{1}"),
+    ("signal_list.h", "SIGNAL", 0, "TEXT_SIGNAL_NAME_{0}"),
+    ("command_list.h", "COMMAND", 0, "TEXT_COMMAND_NAME_{0}"),
 )
-# Those that C includes as one, which the build makes of the parts; the first part stands below the others.
-JOINED = {
-    "firmware/dictionary/all_faults.h": "firmware/dictionary/fault_list.h",
-    "firmware/console/all_help.h": "firmware/console/help_list.h",
-}
 NAME = re.compile(r"TEXT_(PARAMETER|SIGNAL|COMMAND)_NAME_")  # what is looked up: the last of the texts
 BLOCK = 16  # PACKED_BLOCK: texts and entries from the beginning of a word on
-INCLUDE = re.compile(r'^#include "(firmware/[^"]+)"$', re.MULTILINE)
-TOKEN = re.compile(r'//[^\n]*|"(?:[^"\\]|\\.)*"|[(),]|[^"(),/]+|/')
 
 
-def rows(text: str, macro: str) -> list[list[str]]:
-    """The arguments of each call of the macro; strings that stand side by side are one, without their quotes."""
-    found: list[list[str]] = []
-    depth, open_call, last = 0, False, ""
-    for token in TOKEN.findall(text):
-        if token.startswith("//"):
-            continue
-        if token == "(" and depth == 0:
-            open_call = last.split()[-1:] == [macro]
-            if open_call:
-                found.append([""])
-        elif token == ")" and depth == 1:
-            open_call = False
-        elif token == "," and depth == 1 and open_call:
-            found[-1].append("")
-        elif open_call:
-            found[-1][-1] += token[1:-1].replace('\\"', '"') if token.startswith('"') else token.strip()
-        depth += (token == "(") - (token == ")")
-        last = token
-    return found
-
-
-def parts(root: Path, pattern: str) -> list[Path]:
-    """The files of a list: the one that is of no feature first, then by their paths."""
-    firsts = {root / first for first in JOINED.values()}
-    return sorted(root.glob(pattern), key=lambda path: (path not in firsts, path))
-
-
-def joined(root: Path) -> dict[str, str]:
-    """The headers that include all parts of a list, by their names."""
-    found = {}
-    for header, first in JOINED.items():
-        of = parts(root, f"firmware/**/{Path(first).name}")
-        lines = [f'#include "{path.relative_to(root).as_posix()}"' for path in of]
-        found[header] = "\n".join(["// Made by toolchain/compose.py: the rows of every folder.", "", *lines, ""])
-    return found
-
-
-def rows_of(root: Path, pattern: str, macro: str) -> list[list[str]]:
-    """The rows of all parts of a list; faults by their numbers, which their texts are found by."""
-    found = [
-        row for path in parts(root, pattern) for row in rows(whole(root, path.relative_to(root).as_posix()), macro)
-    ]
-    return sorted(found, key=lambda row: int(row[0])) if macro == "FAULT" else found
-
-
-def files(root: Path) -> list[Path]:
-    """All lists, with the parts that some consist of."""
-    found = [path for pattern, *_ in LISTS for path in parts(root, pattern)]
-    included = [root / name for path in found for name in INCLUDE.findall(path.read_text(encoding="utf-8"))]
-    return sorted({*found, *included})
-
-
-def whole(root: Path, name: str) -> str:
-    """A list with its parts in the place of their names."""
-    text = (root / name).read_text(encoding="utf-8")
-    return INCLUDE.sub(lambda part: (root / part[1]).read_text(encoding="utf-8"), text)
-
-
-def texts(root: Path = ROOT) -> dict[str, str]:
+def texts(lists: Lists = TREE) -> dict[str, str]:
     """All texts by what their numbers are called, in their order."""
-
-    def read() -> Iterator[tuple[str, str]]:
-        for pattern, macro, column, name in LISTS:
-            for row in rows_of(root, pattern, macro):
-                yield name.format(*row), row[column]
-
     found: dict[str, str] = {}
-    for name, text in read():
-        if not text.isascii() or "\\" in text or any(not 32 <= ord(c) < 127 for c in text):
-            raise ValueError(f"not plain ASCII: {text!r}")
-        if name in found:
-            raise ValueError(f"{name} is there twice")
-        found[name] = text
+    for list_name, macro, column, number in LISTS:
+        for row in lists.rows(list_name, macro):
+            name, text = number.format(*row), row[column]
+            if not text.isascii() or "\\" in text or any(not 32 <= ord(c) < 127 for c in text):
+                raise ValueError(f"not plain ASCII: {text!r}")
+            if name in found:
+                raise ValueError(f"{name} is there twice")
+            found[name] = text
     return found
 
 

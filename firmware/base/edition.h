@@ -19,9 +19,10 @@ typedef struct {
 } rows_t;
 
 /// Those that are left out, from the first to the last.
-extern const rows_t edition_parameters_left_out[];  // of parameter_list.h
-extern const rows_t edition_signals_left_out[];     // of signal_list.h
-extern const rows_t edition_faults_left_out[];      // of fault_list.h
+extern const rows_t edition_parameters_left_out[];  // of all_parameters.h
+extern const rows_t edition_signals_left_out[];     // of all_signals.h
+extern const rows_t edition_faults_left_out[];      // of all_faults.h
+extern const rows_t edition_requests_left_out[];    // numbers: request_row_t.type
 
 /// Kinds of words that are left out (text/words.h), a bit each.
 extern const uint16_t edition_words_left_out;

@@ -39,10 +39,10 @@ static int32_t share_between(int32_t value, int32_t from, int32_t to, int32_t en
 static drive_fault_t follow_heat_sink(int32_t* share_q15) {
   const int32_t code = (int32_t)sampling_auxiliary();
   const bool broken = code > ntc[0] + SENSOR_MARGIN || code < ntc[BOARD_NTC_POINTS - 1u] - SENSOR_MARGIN;
-  drive.heat_sink_q8 = celsius_q8(code);
-  drive.heat_sink_known = !broken;
-  if (broken || drive.heat_sink_q8 > parameters.temperature_limit) return FAULT_TEMPERATURE;
-  *share_q15 = share_between(drive.heat_sink_q8, parameters.temperature_derating, parameters.temperature_limit,
+  board.heat_sink_q8 = celsius_q8(code);
+  known_beside = broken ? 0u : KNOWN_HEAT_SINK;
+  if (broken || board.heat_sink_q8 > parameters.temperature_limit) return FAULT_TEMPERATURE;
+  *share_q15 = share_between(board.heat_sink_q8, parameters.temperature_derating, parameters.temperature_limit,
                              INTERLOCK_SHARE_ONE / 2);
   return FAULT_NONE;
 }
@@ -76,7 +76,7 @@ drive_fault_t board_follow_heat(void) {
   if (parameters.temperature_limit != 0 && drive.state != DRIVE_CALIBRATE) {
     fault = follow_heat_sink(&share_q15);
   } else {
-    drive.heat_sink_known = false;
+    known_beside = 0u;
   }
   const int32_t ever_q20 = board_lasting_current();
   if (ever_q20 != 0) {

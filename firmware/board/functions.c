@@ -20,6 +20,7 @@ board_t board;
 
 void board_reset(void) {
   clear(&board, sizeof board);
+  known_beside = 0u;
   board.share_q15 = INTERLOCK_SHARE_ONE;
   board.switch_closed = true;  // a switch that is closed at power-on starts nothing
   selftest_reset();
@@ -126,7 +127,7 @@ static void put_board(octet_writer_t* w) {
   if (parameters.emergency_stop != 0) put_item(w, hal_digital_io_emergency() ? BOARD_PRESSED : BOARD_RELEASED);
   if (parameters.precharge_voltage != 0) put_item(w, board.relay ? BOARD_CHARGED : BOARD_CHARGING);
   if (parameters.brake_voltage != 0) put_item(w, board.braking ? BOARD_BRAKING : BOARD_NOT_BRAKING);
-  if (drive.heat_sink_known) put_number(w, BOARD_HEAT_SINK, drive.heat_sink_q8, 8, " C; ");
+  if ((known_beside & KNOWN_HEAT_SINK) != 0u) put_number(w, BOARD_HEAT_SINK, board.heat_sink_q8, 8, " C; ");
   if (parameters.speed_input != 0) put_item(w, (board_words_t)((uint16_t)BOARD_INPUT_OFF + (uint16_t)board.input));
   if (parameters.overload_current == 0) put_item(w, BOARD_OVERLOAD_UNWATCHED);
   if (parameters.overload_current < 0 && parameters.rated_current == 0) put_item(w, BOARD_RATED_UNTOLD);

@@ -45,6 +45,7 @@ typedef struct {
   uint16_t silent_ms;      // the gates should pass and have not for so long
   int32_t brake_mean_q30;  // share of the last seconds in which the brake resistor was on
   int32_t share_q15;       // of current_limit, left by heat sink and overload
+  int32_t heat_sink_q8;    // degrees C
   int32_t heat_q24;        // mean square of the current, of that which may flow for ever
   uint16_t code;           // of the speed command
   uint16_t lost_ms;        // without a signal for so long

@@ -8,7 +8,7 @@
 
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) ID_##name = id,
 enum {
-#include "firmware/dictionary/parameter_list.h"
+#include "firmware/dictionary/all_parameters.h"
   ID_NONE = 0
 };
 #undef PARAMETER

@@ -12,7 +12,7 @@
 enum {
   SIGNAL_NONE = 0
 #define SIGNAL(name, unit, q, of, value, meaning) +1
-#include "firmware/dictionary/signal_list.h"
+#include "firmware/dictionary/all_signals.h"
 #undef SIGNAL
 };
 

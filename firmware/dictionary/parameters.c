@@ -20,13 +20,13 @@ static const int16_t steps[8] = {1, 10, 100, 1000, 1024};
 
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
   typedef char name##_fits[(STEP(minimum) < 5 && STEP(maximum) < 5 && STEP(initial) < 5 && (decimals) <= 6) ? 1 : -1];
-#include "firmware/dictionary/parameter_list.h"
+#include "firmware/dictionary/all_parameters.h"
 #undef PARAMETER
 
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
   {id, q, decimals, PARAMETER_##access, UNIT_##unit, WORD(minimum), WORD(maximum), WORD(initial)},
 static const parameter_info_t table[] = {
-#include "firmware/dictionary/parameter_list.h"
+#include "firmware/dictionary/all_parameters.h"
 };
 #undef PARAMETER
 

@@ -16,7 +16,7 @@ extern "C" {
 /// One int32_t per parameter, with the table's number of fractional bits, in units of the formats (units.h).
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) int32_t name;
 typedef struct {
-#include "firmware/dictionary/parameter_list.h"
+#include "firmware/dictionary/all_parameters.h"
 } parameters_t;
 #undef PARAMETER
 

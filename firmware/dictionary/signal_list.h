@@ -1,10 +1,13 @@
-// The drive's signals that tools may look at. SIGNAL(name, unit, q, of, value, meaning): `value` is where the drive `d`
-// has it between two runs of the control interrupt (signals.c); an int32_t with q fractional bits; angles are binary
-// angles (unit "turn", q 32). What is said of the ROTOR is known only with its angle (speed_known), what is said in the
-// FRAME of the control only while the power stage is on, what is said of the HEAT_SINK only where its sensor is in use:
-// 0 else, whatever the estimators make of nothing. What is said of the DRIVE is always known. No include guard: it is
-// included with different meanings of SIGNAL.
+// The signals that every drive has, things that tools may look at. SIGNAL(name, unit, q, of, value, meaning): `value`
+// is where the drive `d` has it between two runs of the control interrupt; an int32_t with q fractional bits; angles
+// are binary angles (unit "turn", q 32). What is said of the ROTOR is known only with its angle (speed_known), what is
+// said in the FRAME of the control only while the power stage is on, what is said of the HEAT_SINK only where its
+// sensor is in use: 0 else, whatever the estimators make of nothing. What is said of the DRIVE is always known. Those
+// of a feature are in a list of its folder, and a signals.c beside it (drive/signal_looks.h); the build joins all rows
+// (all_signals.h): PLACE(number) says where those that follow stand in the table, smaller ones first, what has none
+// last. No include guard: it is included with different meanings of SIGNAL.
 
+PLACE(10)
 SIGNAL(state, NONE, 0, DRIVE, d->state, "state of the drive")
 SIGNAL(fault, NONE, 0, DRIVE, d->fault, "latched fault")
 SIGNAL(limit, NONE, 0, DRIVE, d->limits, "active limits, one bit each")
@@ -32,14 +35,10 @@ SIGNAL(windows, NONE, 0, DRIVE, d->samples.count, "current windows sampled in th
 SIGNAL(start_phase, NONE, 0, DRIVE, d->found.phase, "phase of the start")
 SIGNAL(polarity_sigma, NONE, 8, DRIVE, d->found.sigma_q8,
        "confidence in the polarity found at the start, standard errors")
-SIGNAL(load_angle, TURN, 32, ROTOR, load_angle(d->position.flux),
-       "estimated angle of the stator flux ahead of the rotor")
+
+PLACE(30)
 SIGNAL(current_a, A, 20, DRIVE, phase_current(d, false),
        "current of phase a as its sensor reads it, with the gates off as well")
 SIGNAL(current_b, A, 20, DRIVE, phase_current(d, true), "current of phase b, as current_a")
 SIGNAL(speed_known, NONE, 0, DRIVE, (known & KNOWN_ROTOR) != 0u,
        "1: angle and speed are the rotor's; 0: unknown, the shaft may turn")
-SIGNAL(magnet_flux, MVS, 16, DRIVE, magnet_flux_q16(d->position.flux),
-       "magnet flux as the stator-flux sources estimate it")
-SIGNAL(wiring, NONE, 0, DRIVE, d->found.wiring, "wiring mistake found at the start, 0 none")
-SIGNAL(temperature, CELSIUS, 8, HEAT_SINK, d->heat_sink_q8, "of the heat sink; unknown where temperature_limit is 0")

@@ -9,19 +9,6 @@
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 
-#define DRIVE 0
-#define ROTOR KNOWN_ROTOR
-#define FRAME KNOWN_FRAME
-#define HEAT_SINK KNOWN_HEAT_SINK
-
-#define SIGNAL(name, unit, q, of, value, meaning) {TEXT_SIGNAL_NAME_##name, q, of, UNIT_##unit},
-static const signal_info_t table[] = {
-#include "firmware/dictionary/signal_list.h"
-};
-#undef SIGNAL
-
-// Volatile: to the background level the interrupt changes the drive at any time.
-#define SIGNAL_RPM(speed_bpp) q_mul_sat(speed_bpp, d->config.rpm_per_bpp_q40, 24)
 // By Clarke's components of the windows: they have offset and gains in them already.
 static int32_t phase_current(const volatile drive_t* d, bool of_b) {
   const uint16_t count = d->samples.count & ESTIMATOR_WINDOWS;  // three: a mask, too
@@ -36,22 +23,20 @@ static int32_t phase_current(const volatile drive_t* d, bool of_b) {
   return q_mul_sat(q_mul_floor(beta_q17, FRAME_SQRT3_HALF_Q30, 30) - alpha_q17 / 2, share_q30, 27);
 }
 
-// The pointer is given: it is read once, and is one or none.
-static int32_t load_angle(const flux_observer_t* f) { return (f == NULL) ? 0 : f->load_angle_bam; }
-static int32_t magnet_flux_q16(const flux_observer_t* f) { return (f == NULL) ? 0 : f->machine.psi_q16 / 10; }
-
-// What is known is asked once for all of a pass: it has to fit between two interrupts.
-#define SIGNAL(name, unit, q, of, value, meaning)                            \
-  static int32_t look_at_##name(const volatile drive_t* d, uint16_t known) { \
-    (void)d;                                                                 \
-    return (((of) & ~(int32_t)known) != 0) ? 0 : (int32_t)(value);           \
-  }
+#include "firmware/drive/signal_looks.h"
+// Behind it: its looks.
 #include "firmware/dictionary/signal_list.h"
 #undef SIGNAL
 
-#define SIGNAL(name, unit, q, of, value, meaning) look_at_##name,
-static signal_look_t* const looks[] = {
-#include "firmware/dictionary/signal_list.h"
+int32_t look_at_nothing(const volatile drive_t* d, uint16_t known) {
+  (void)d;
+  (void)known;
+  return 0;
+}
+
+#define SIGNAL(name, unit, q, of, value, meaning) {TEXT_SIGNAL_NAME_##name, q, of, UNIT_##unit},
+static const signal_info_t table[] = {
+#include "firmware/dictionary/all_signals.h"
 };
 #undef SIGNAL
 
@@ -69,9 +54,11 @@ bool signal_is_left_out(uint16_t place) { return rows_have(edition_signals_left_
 
 bool drive_signal_is_known(uint16_t place, uint16_t known) { return (table[place].needs & ~known) == 0; }
 
-signal_look_t* signal_look(uint16_t place) { return looks[place]; }
+signal_look_t* signal_look(uint16_t place) { return edition_signal_looks[place]; }
 
-int32_t drive_signal(uint16_t place, uint16_t known) { return (place < COUNT) ? looks[place](&drive, known) : 0; }
+int32_t drive_signal(uint16_t place, uint16_t known) {
+  return (place < COUNT) ? edition_signal_looks[place](&drive, known) : 0;
+}
 
 // The interrupt runs as a whole between two instructions of this level: if it has not counted on, it has not been here.
 signals_seen_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_t* copy) {
@@ -99,7 +86,7 @@ drive_signals_t drive_signals(void) {
   do {
     seen = *interrupts;
     const uint16_t known = drive_known(&drive);
-    for (uint16_t k = 0; k < COUNT; k++) values[k] = looks[k](&drive, known);
+    for (uint16_t k = 0; k < COUNT; k++) values[k] = edition_signal_looks[k](&drive, known);
   } while (seen != *interrupts);
   return s;
 }

@@ -14,7 +14,7 @@ extern "C" {
 
 #define SIGNAL(name, unit, q, of, value, meaning) int32_t name;
 typedef struct {
-#include "firmware/dictionary/signal_list.h"
+#include "firmware/dictionary/all_signals.h"
 } drive_signals_t;
 #undef SIGNAL
 

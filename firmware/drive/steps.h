@@ -10,8 +10,11 @@ void drive_control_step(drive_t* d);
 
 /// Called at the end of that, at control interrupt level; NULL while nobody looks on, which costs least.
 extern void (*drive_onlooker)(void);
-/// How it looks at a signal (signal_list.h): found once, by a place below signal_count().
 typedef int32_t signal_look_t(const volatile drive_t* d, uint16_t known);
+/// By the places of the signals; look_at_nothing for those of features that the edition has not (editions/).
+extern signal_look_t* const edition_signal_looks[];
+signal_look_t look_at_nothing;
+/// How it looks at a signal: found once, by a place below signal_count().
 signal_look_t* signal_look(uint16_t place);
 
 /// Background level: what is worked out between two control interrupts (drive/reload.c).

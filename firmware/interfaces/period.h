@@ -11,7 +11,6 @@
 #include "estimators/avv.h"
 #include "estimators/blend.h"
 #include "estimators/deviation_observer.h"
-#include "estimators/flux_observer.h"
 #include "estimators/inverse_inductance.h"
 #include "estimators/sensor_match.h"
 #include "estimators/slopes.h"
@@ -49,10 +48,9 @@ typedef struct {
   deviation_observer_t observer;
   blend_t blend;
   sensor_match_t sensors;
-  bool is_near;                 // what was last regressed is near enough to learn from
-  int32_t torque_accel_q8;      // acceleration of the torque of the measured current
-  int32_t deviation_q20;        // D of the zero vectors in the frame in use, A per period
-  const flux_observer_t* flux;  // for those who look, NULL where no source has one
+  bool is_near;             // what was last regressed is near enough to learn from
+  int32_t torque_accel_q8;  // acceleration of the torque of the measured current
+  int32_t deviation_q20;    // D of the zero vectors in the frame in use, A per period
 } drive_position_t;
 
 typedef struct {

@@ -8,16 +8,6 @@
 
 #define COMMAND_BODY 5u  // code and argument
 
-// What some edition answers (requests.h).
-#define FROM_TO(first, last) {(first), (last) + 1u - (first)}
-static const rows_t known[] = {
-    FROM_TO(REQUEST_IDENTITY, REQUEST_LINK),
-    FROM_TO(REQUEST_SCOPE_SETUP, REQUEST_LOOK),
-    FROM_TO(REQUEST_HIL_ENTER, REQUEST_HIL_LEAVE),
-    FROM_TO(REQUEST_OF_COMMAND(COMMAND_START), REQUEST_OF_COMMAND(COMMAND_LOOK)),
-    {0, 0},
-};
-
 static const request_row_t* find(uint16_t type) {
   for (uint16_t k = 0; edition_requests[k] != NULL; k++) {
     for (const request_row_t* row = edition_requests[k]; row->handler != NULL; row++) {
@@ -34,7 +24,7 @@ static answer_status_t handle(request_t* r, uint16_t type) {
   }
   const request_row_t* const row = find(type);
   const uint16_t count = octets_left(&r->body);
-  if (row == NULL) return rows_have(known, type) ? ANSWER_EDITION : ANSWER_UNKNOWN;
+  if (row == NULL) return rows_have(edition_requests_left_out, type) ? ANSWER_EDITION : ANSWER_UNKNOWN;
   if (count < (row->body & 0xFFu) || count > row->body >> 8) return ANSWER_LENGTH;
   return row->handler(r);
 }

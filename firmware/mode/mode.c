@@ -8,6 +8,7 @@
 #include "hal/qmath/qcall.h"
 
 drive_t drive;
+uint16_t known_beside;
 
 // All states behind READY but FAULT, until the state itself says that it is over.
 static bool is_energised(const volatile drive_t* d) {
@@ -19,7 +20,7 @@ bool drive_is_energised(void) { return is_energised(&drive); }
 static bool sees_currents(const volatile drive_t* d) { return is_energised(d) && d->flags.invalid == 0u; }
 
 uint16_t drive_known(const volatile drive_t* d) {
-  const uint16_t beside = d->heat_sink_known ? KNOWN_HEAT_SINK : 0u;
+  const uint16_t beside = known_beside;
   if (!sees_currents(d)) return beside;
   if (d->state == DRIVE_START && !d->flags.caught) return KNOWN_FRAME | beside;
   return KNOWN_ROTOR | KNOWN_FRAME | beside;

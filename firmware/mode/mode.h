@@ -48,8 +48,6 @@ typedef struct drive {
   uint32_t settled_at;                           // period in which the currents will have been at rest for long enough
   int32_t zero_current_a_q8, zero_current_b_q8;  // currents at rest while the offsets are found, codes
   int32_t offset_residual_q8;  // mean deviation of the currents from their offsets while these are found, codes
-  int32_t heat_sink_q8;        // by the background level (board/derating.c), degrees C
-  bool heat_sink_known;        // and this: by a sensor that is in use and whole
   drive_config_t config;
 } drive_t;
 
@@ -76,6 +74,8 @@ static inline bool drive_is_turning(const drive_t* d) {
 /// gates off nothing is, with an encoder neither: what it counts has an angle from the start's end on, while the drive
 /// runs.
 bool drive_knows_speed(const volatile drive_t* d);
+/// Bits of known_t that are not the drive's own: who sees to one writes it, at background level.
+extern uint16_t known_beside;
 /// The bits of known_t.
 uint16_t drive_known(const volatile drive_t* d);
 

@@ -188,10 +188,10 @@ nb::list signal_rows() {
 nb::list dictionary_names() {
   nb::list names;
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) names.append(#name);
-#include "firmware/dictionary/parameter_list.h"
+#include "firmware/dictionary/all_parameters.h"
 #undef PARAMETER
 #define SIGNAL(name, unit, q, of, value, meaning) names.append(#name);
-#include "firmware/dictionary/signal_list.h"
+#include "firmware/dictionary/all_signals.h"
 #undef SIGNAL
   return names;
 }

@@ -37,7 +37,7 @@ struct Column {
 
 #define SIGNAL(name, unit, q, of, value, meaning) kPlace_##name,
 enum Place {
-#include "firmware/dictionary/signal_list.h"
+#include "firmware/dictionary/all_signals.h"
 };
 #undef SIGNAL
 

@@ -83,7 +83,7 @@ std::vector<std::int32_t> raw_signals() {
   const drive_signals_t s = drive_signals();
   return {
 #define SIGNAL(name, unit, q, of, value, meaning) s.name,
-#include "firmware/dictionary/signal_list.h"
+#include "firmware/dictionary/all_signals.h"
 #undef SIGNAL
   };
 }

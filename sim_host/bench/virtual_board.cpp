@@ -193,7 +193,7 @@ std::vector<Quantity> VirtualBoard::signals() {
   return {
 #define SIGNAL(name, unit, q, of, value, meaning) \
   {#name, unit_name(UNIT_##unit), std::ldexp(static_cast<double>(s.name), unit_exponent(UNIT_##unit) - (q))},
-#include "firmware/dictionary/signal_list.h"
+#include "firmware/dictionary/all_signals.h"
 #undef SIGNAL
   };
 }

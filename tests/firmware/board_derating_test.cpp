@@ -3,6 +3,9 @@
 #include "tests/firmware/board_functions_test.hpp"
 
 namespace stillspin::test {
+
+int32_t& inside::heat_sink_q8() { return ::board.heat_sink_q8; }
+
 namespace {
 
 class Derating : public BoardFunctions {};

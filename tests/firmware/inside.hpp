@@ -19,7 +19,7 @@ inline auto& control() { return drive.control; }
 inline auto& fault() { return drive.fault; }
 inline auto& flags() { return drive.flags; }
 inline auto& heartbeat() { return drive.heartbeat; }
-inline auto& heat_sink_q8() { return drive.heat_sink_q8; }
+int32_t& heat_sink_q8();  // board_derating_test.cpp
 inline auto& limits() { return drive.limits; }
 inline auto& loading() { return drive.loading; }
 inline auto& model() { return drive.model; }

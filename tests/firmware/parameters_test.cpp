@@ -34,7 +34,7 @@ constexpr bool STOPPED = false, ALWAYS = true;
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
   {id, #name, q, decimals, minimum, maximum, initial, &parameters.name, access},
 const Row kListed[] = {
-#include "firmware/dictionary/parameter_list.h"
+#include "firmware/dictionary/all_parameters.h"
 };
 #undef PARAMETER
 

@@ -14,7 +14,7 @@ namespace stillspin::test {
 
 enum : std::uint16_t {
 #define SIGNAL(name, unit, q, of, value, meaning) signal_##name,
-#include "firmware/dictionary/signal_list.h"
+#include "firmware/dictionary/all_signals.h"
 #undef SIGNAL
   signals_listed
 };

@@ -36,7 +36,7 @@ namespace stillspin::test {
 std::string fuzz_complaint_of_parameters() {
   static const char* const names[] = {
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) #name,
-#include "firmware/dictionary/parameter_list.h"
+#include "firmware/dictionary/all_parameters.h"
 #undef PARAMETER
   };
   const std::uint16_t place = fuzz_parameter_out_of_range();

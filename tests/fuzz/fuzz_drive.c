@@ -206,7 +206,7 @@ uint16_t fuzz_parameter_out_of_range(void) {
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
   place++;                                                                                 \
   if (is_wrong(id, parameters.name)) return place;
-#include "firmware/dictionary/parameter_list.h"
+#include "firmware/dictionary/all_parameters.h"
 #undef PARAMETER
   return 0;
 }

@@ -7,7 +7,7 @@
 
 enum {
 #define SIGNAL(name, unit, q, of, value, meaning) SIGNAL_##name,
-#include "firmware/dictionary/signal_list.h"
+#include "firmware/dictionary/all_signals.h"
 #undef SIGNAL
 };
 

@@ -14,6 +14,7 @@
 #include "firmware/mode/mode.h"
 #include "firmware/mode/states.h"
 #include "firmware/scope/scope.h"
+#include "firmware/sources/flux/flux.h"
 #include "firmware/start/flying/look.h"
 #include "firmware/store/store.h"
 #include "hal/hal_irq.h"
@@ -21,6 +22,9 @@
 #include "hal/hal_sci.h"
 
 drive_t drive;
+flux_observer_t flux_observer;
+board_t board;
+uint16_t known_beside;
 void (*drive_onlooker)(void);
 
 static void any_fault(void) {
@@ -57,10 +61,10 @@ void any_moment(void) {
   drive.position.high.angle_bam = any_u32;
   drive.position.blend.share_q15 = any_i32;
   drive.position.deviation_q20 = any_i32;
-  static flux_observer_t flux;
-  flux.load_angle_bam = any_i32;
-  flux.machine.psi_q16 = any_i32;
-  drive.position.flux = any_bool() ? &flux : NULL;
+  flux_observer.load_angle_bam = any_i32;
+  flux_observer.machine.psi_q16 = any_i32;
+  board.heat_sink_q8 = any_i32;
+  known_beside = any_u16;
   drive.control.ramp.value = any_i32;
   drive.control.measured_q20.d = any_i32;
   drive.control.measured_q20.q = any_i32;

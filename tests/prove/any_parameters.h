@@ -21,7 +21,7 @@
 static inline void any_parameters(void) {
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
   parameters.name = any_from(RAW(minimum, q, TEN_##decimals), RAW(maximum, q, TEN_##decimals));
-#include "firmware/dictionary/parameter_list.h"
+#include "firmware/dictionary/all_parameters.h"
 #undef PARAMETER
 }
 

@@ -164,7 +164,7 @@ def test_a_parameter_that_not_every_edition_has_says_which_have() -> None:
 def test_a_parameter_that_is_on_no_page_fails_the_check(tree: Path) -> None:
     """A new one, one that changed, and one that nobody says anything of."""
     assert pieces.check(tree) == []
-    listed = tree / "firmware/dictionary/parameters_machine.h"
+    listed = tree / "firmware/dictionary/parameter_list.h"
     text = listed.read_text(encoding="utf-8")
     listed.write_text(text.replace("1, 30, 4, STOPPED", "1, 31, 4, STOPPED"), encoding="utf-8")
     assert [str(finding) for finding in pieces.check(tree)] == [

@@ -121,7 +121,7 @@ def test_texts_of_what_is_left_out_are_not_packed_but_for_names() -> None:
     assert gone <= needless
     kept = {"TEXT_COMMAND_NAME_scope", "TEXT_COMMAND_start", "TEXT_HELP_start_1", "TEXT_FAULT_2", "TEXT_STATUS_8"}
     assert not kept & needless
-    assert needless <= compose.pack_text.texts(ROOT).keys(), "every one of them is a text"
+    assert needless <= compose.pack_text.texts().keys(), "every one of them is a text"
     assert not compose.needless_texts(compose.read_edition("lab"), ROOT)
 
 

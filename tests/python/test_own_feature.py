@@ -6,12 +6,17 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from desk import needs_board
 from own_edition import LOADED, linked
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "toolchain"))
+
+from row_lists import Lists  # noqa: E402
+
 EXAMPLE = ROOT / "tests/feature"
 PAGE = ROOT / "docs/feature.md"
 FENCED = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -49,8 +54,11 @@ for volts in (3.0, 1.5):
         board.advance(SECOND // 200_000)
         ripple.append(board.truth()["i_q"])
     seen.append((sum(ripple) / len(ripple), board.truth()["speed"], typed("status")))
+board.set_input("speed", 0.0)
+board.advance(SECOND // 5)
+said = [typed(line) for line in ("get torque_share", "set torque_limit_least 60", "get torque_share", "list torque")]
 board.close()
-print(json.dumps(seen))
+print(json.dumps([seen, said, native.names()]))
 """
 
 
@@ -62,16 +70,36 @@ def own(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return linked(folder / "limited.txt", *folder.glob("torque_limit/*.c"))
 
 
-@needs_board
-def test_the_voltage_limits_the_torque(own: Path) -> None:
+@pytest.fixture(scope="module")
+def driven(own: Path) -> list[Any]:
+    """What it does on a board, what it says, and the names in its tables."""
     run = subprocess.run([sys.executable, "-c", LOADED + DRIVEN, own], capture_output=True, text=True, check=True)
-    (whole, at_speed, all_of_it), (half, slower, half_of_it) = json.loads(run.stdout)
+    return json.loads(run.stdout)
+
+
+@needs_board
+def test_the_voltage_limits_the_torque(driven: list[Any]) -> None:
+    (whole, at_speed, all_of_it), (half, slower, half_of_it) = driven[0]
     assert 8.5 < whole < 10.5  # what the load takes
     assert at_speed == pytest.approx(600, abs=30)
     assert 6.0 < half < 7.5  # half of current_limit
     assert slower < 560
     assert "100 % of current_limit" in all_of_it
     assert "50 % of current_limit" in half_of_it
+
+
+@needs_board
+def test_its_parameter_and_its_signal_are_in_the_tables(driven: list[Any]) -> None:
+    """Behind all others, whose places stay; the parameter acts."""
+    least, _, more, listed = driven[1]
+    assert re.search(r"torque_share +5.00 % ", least)
+    assert re.search(r"torque_share +60.00 % ", more)
+    assert re.search(r"torque_limit_least +60 % ", listed)
+    parameters, signals = (
+        [row[at] for row in Lists().rows(name, macro)]
+        for name, macro, at in (("parameter_list.h", "PARAMETER", 1), ("signal_list.h", "SIGNAL", 0))
+    )
+    assert driven[2] == [*parameters, "torque_limit_least", *signals, "torque_share"]
 
 
 def test_what_the_page_shows_is_what_is_built() -> None:

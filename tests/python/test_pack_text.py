@@ -13,6 +13,7 @@ sys.path.insert(0, str(ROOT / "toolchain"))
 import compose  # noqa: E402
 import pack_text  # noqa: E402
 import word_code  # noqa: E402
+from row_lists import Lists  # noqa: E402
 
 
 def table(source: str, name: str) -> list[int]:
@@ -81,12 +82,6 @@ class Unpacked:
         return found
 
 
-def test_arguments_of_a_macro_are_found() -> None:
-    text = 'FAULT(1, A, "no", "")  // FAULT(2, B, "comment", "")\nOTHER(3)\nFAULT(4, f(a, b),\n  "x, (y"\n " z")'
-    assert pack_text.rows(text, "FAULT")[0] == ["1", "A", "no", ""]
-    assert pack_text.rows(text, "FAULT")[-1] == ["4", "f(a,b)", "x, (y z"]
-
-
 def test_every_list_has_its_texts() -> None:
     texts = pack_text.texts()
     assert texts["TEXT_PARAMETER_stator_resistance"] == "stator resistance of a phase"
@@ -101,24 +96,12 @@ def test_texts_are_numbered_as_they_are_packed() -> None:
     assert names == [*pack_text.texts(), "PACKED_TEXTS"]
 
 
-def test_a_list_has_the_rows_of_every_folder() -> None:
-    """Faults by their numbers, which their words are found by; what the console's own commands say comes first."""
-    faults = [int(row[0]) for row in pack_text.rows_of(ROOT, "firmware/**/fault_list.h", "FAULT")]
-    assert faults == list(range(len(faults)))
-    assert pack_text.rows_of(ROOT, "firmware/**/help_list.h", "HELP")[0][:2] == ["list", "1"]
-    for header, text in pack_text.joined(ROOT).items():
-        name = Path(pack_text.JOINED[header]).name
-        folders = {path.relative_to(ROOT).as_posix() for path in (ROOT / "firmware").rglob(name)}
-        assert len(folders) > 3
-        assert set(re.findall(r'#include "([^"]+)"', text)) == folders
-
-
 def test_two_texts_of_a_name_are_refused(tmp_path: Path) -> None:
     for folder in ("scope", "can"):
         (tmp_path / "firmware" / folder).mkdir(parents=True)
         (tmp_path / "firmware" / folder / "phrase_list.h").write_text('PHRASE(none, "none")\n', encoding="utf-8")
     with pytest.raises(ValueError, match="SAY_none is there twice"):
-        pack_text.texts(tmp_path)
+        pack_text.texts(Lists(tmp_path))
 
 
 @pytest.mark.parametrize("edition", ["lab", "minimal"])
@@ -188,4 +171,4 @@ def test_what_the_console_cannot_show_is_refused(tmp_path: Path, text: str) -> N
     (tmp_path / "firmware" / "text").mkdir(parents=True)
     (tmp_path / "firmware" / "text" / "catalogue_list.h").write_text(f'WORDS(STATE, 0, "{text}")\n', encoding="utf-8")
     with pytest.raises(ValueError, match="plain ASCII"):
-        pack_text.texts(tmp_path)
+        pack_text.texts(Lists(tmp_path))

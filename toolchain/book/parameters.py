@@ -10,13 +10,9 @@ from pathlib import Path
 
 import compose
 from board_table import read
-from pack_text import rows, whole
+from row_lists import Lists, rows
 
-LIST, UNITS, SEEN = (
-    "firmware/dictionary/parameter_list.h",
-    "firmware/dictionary/unit_list.h",
-    "docs/what_you_see.toml",
-)
+UNITS, SEEN = "firmware/dictionary/unit_list.h", "docs/what_you_see.toml"
 BOARD = "hal/boards/bench.h"
 EDITIONS = "firmware/editions"
 ACCESS = {"STOPPED": "may change only while the power stage is off", "ALWAYS": "may change at any time"}
@@ -49,8 +45,8 @@ def parameters(root: Path) -> Iterator[Parameter]:
     """All of them, in the order of the list; what the board decides is that of `bench`."""
     board = {name: text.rstrip("u") for name, text in read(root / BOARD).values.items()}
     units = {token: text for token, text, *_ in rows((root / UNITS).read_text(encoding="utf-8"), "UNIT")}
-    text = whole(root, LIST)
-    starts = [match for match in _HEADING.finditer(text) if match.start() > 0]
+    text = Lists(root).text("parameter_list.h")
+    starts = list(_HEADING.finditer(text))
     for k, match in enumerate(starts):
         part = text[match.end() : starts[k + 1].start() if k + 1 < len(starts) else len(text)]
         title = match["title"].partition(" (")[0].partition(":")[0]
@@ -60,13 +56,13 @@ def parameters(root: Path) -> Iterator[Parameter]:
 
 
 def editions(root: Path) -> dict[str, list[str]]:
-    """Of a feature's parameters, by their numbers: the editions that have them, the largest first."""
+    """Of parameters that not every edition has, by their numbers: those that have them, the largest first."""
     lists = [compose.read_edition(path.stem, root) for path in sorted((root / EDITIONS).glob("*.txt"))]
     found: dict[str, list[str]] = {}
     for edition in sorted(lists, key=lambda each: -len(each.features)):
         for number in (number for feature in edition.features for number in feature.parameters):
             found.setdefault(str(number), []).append(edition.name)
-    return found
+    return {number: names for number, names in found.items() if len(names) < len(lists)}
 
 
 def _written(raw: str, decimals: int) -> str:

@@ -54,7 +54,12 @@ COMMANDS = {
         (
             *DRIVE,
             *("hal/f2808/image/boot.asm", "toolchain/c28x", "toolchain/f2808", "toolchain/image"),
-            *("toolchain/standin/bin/cl2000", "toolchain/pack_text.py", "toolchain/word_code.py"),
+            *(
+                "toolchain/standin/bin/cl2000",
+                "toolchain/pack_text.py",
+                "toolchain/row_lists.py",
+                "toolchain/word_code.py",
+            ),
             *("toolchain/compose.py", "toolchain/costs.py"),
         ),
     ),

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 import pack_text
+import row_lists
 
 from checks import Finding, left
 from checks.calls import foreign_calls
@@ -118,7 +119,7 @@ def part_of(path: str) -> str | None:
 
 def _resolve(root: Path, source: str, name: str) -> str | None:
     """The file of the tree that ``name``, included by ``source``, means: beside it or from the root."""
-    if name in {pack_text.NUMBERS, *pack_text.JOINED}:
+    if name in {pack_text.NUMBERS, *(of.header for of in row_lists.JOINED.values())}:
         return name  # the build makes it
     for base in (posixpath.dirname(source), ""):
         candidate = posixpath.normpath(posixpath.join(base, name))

@@ -80,6 +80,10 @@ FRAMES = (
     *("tests/prove/framing.c", "firmware/link/splitter.c", RECORD, "firmware/link/cobs.c", CRC),
     *("firmware/can/segments.c", "hal/qmath/qdiv.c"),
 )
+LOOKS = (
+    "made/signal_looks.c",
+    *(f"firmware/{folder}/signals.c" for folder in ("board", "sources/flux", "start/flying")),
+)
 TEXTS = (
     *(
         "firmware/text/text.c",
@@ -87,6 +91,7 @@ TEXTS = (
         "firmware/text/packed_text.c",
         "firmware/dictionary/parameters.c",
         "firmware/drive/signals.c",
+        *LOOKS,
     ),
     *(OCTETS, "hal/qmath/qcall.c", "hal/qmath/qdiv.c", "hal/qmath/qquotient.c"),
 )
@@ -143,7 +148,7 @@ INTERRUPT = (
     *("tests/prove/interrupt.c", "firmware/start/*.c", "firmware/start/*/*.c", "firmware/scope/scope.c"),
     *(*ESTIMATORS, "svpwm/*.c"),
     *("firmware/drive/*.c", "firmware/mode/*.c", "firmware/sources/*/*.c", "firmware/hysteresis/*.c"),
-    *(SOURCES_TABLE, "made/drive_states.c", "made/start_phases.c"),
+    *(SOURCES_TABLE, "made/drive_states.c", "made/start_phases.c", "made/signal_looks.c", "firmware/board/signals.c"),
     *(f"firmware/board/{name}.c" for name in ("derating", "functions", "speed_input")),
     *(f"firmware/commissioning/{name}.c" for name in ("sequence", "hold", "map", "spin", "staircase")),
 )

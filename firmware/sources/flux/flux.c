@@ -32,7 +32,11 @@ int32_t flux_observability_q20;
 
 static flux_observer_config_t made;
 
-void flux_reset(void) { flux_observability_q20 = 0; }
+void flux_reset(void) {
+  flux_observability_q20 = 0;
+  flux_observer.load_angle_bam = 0;
+  flux_observer.machine.psi_q16 = 0;
+}
 
 // That has the shaft, or looks on; below zero without one.
 static int32_t method(void) {
@@ -103,7 +107,6 @@ static void flux_begin(drive_t* d, bool keeps) {
     flux_observer_keep(&flux_observer);
   } else {
     flux_observer_reset(&flux_observer, &flux_config, &d->model);
-    d->position.flux = &flux_observer;
   }
 }
 

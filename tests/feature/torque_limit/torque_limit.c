@@ -14,14 +14,17 @@
 #define CHOOSE_AT 1u
 #define READ_AT 4u
 #define FULL_CODE 4095
-#define LEAST_Q15 (INTERLOCK_SHARE_ONE / 20)  // so that the drive still starts
+#define PERCENT_Q15 200  // in a per cent, Q16, as often as in the whole, Q15
 
 static uint32_t at_ms;
 static int32_t share_q15;
 
+// So that the drive still starts.
+static int32_t least(void) { return parameters.torque_limit_least / PERCENT_Q15; }
+
 void torque_limit_reset(void) {
   at_ms = 0;
-  share_q15 = LEAST_Q15;
+  share_q15 = least();
 }
 
 void torque_limit_service(void) {
@@ -33,7 +36,7 @@ void torque_limit_service(void) {
   if (turn != READ_AT) return;
   const int32_t code = (int32_t)sampling_auxiliary();
   hal_adc_choose_slow(false);
-  share_q15 = q_clamp(q_div(code, FULL_CODE, 15), LEAST_Q15, INTERLOCK_SHARE_ONE);
+  share_q15 = q_clamp(q_div(code, FULL_CODE, 15), least(), INTERLOCK_SHARE_ONE);
 }
 
 int32_t torque_limit_share(void) { return (parameters.speed_input != 0) ? INTERLOCK_SHARE_ONE : share_q15; }

@@ -1,24 +1,6 @@
-// Parameters of ports and functions of the board: rows of parameter_list.h.
+// Parameters of functions of the board: rows of a table, see dictionary/parameter_list.h.
 
-// Serial port
-PARAMETER(200, baud_rate, BAUD, 0, 0, 9600, 400000, 115200, STOPPED,
-          "bit rate; saved, it applies from the next power-on")
-PARAMETER(201, link_timeout, MS, 0, 0, 50, 60000, 1000, ALWAYS,
-          "longest silence of the client that guards the motor, then link_reaction")
-PARAMETER(202, link_reaction, NONE, 0, 0, 1, 2, 1, ALWAYS, "communication lost: 1 stop, 2 coast")
-
-// CAN bus
-PARAMETER(220, can_node, NONE, 0, 0, 1, 31, 1, STOPPED, "number on the CAN bus")
-PARAMETER(221, can_rate, KBIT_PER_S, 0, 0, 0, 1000, 500, STOPPED,
-          "one that is usual, 10 to 1000; with any other value the bus is off")
-PARAMETER(222, can_timeout, MS, 0, 0, 10, 10000, 200, ALWAYS,
-          "longest silence of the bus that started the drive, then can_reaction")
-PARAMETER(223, can_reaction, NONE, 0, 0, 0, 2, 1, ALWAYS, "when commands are missing: 0 nothing, 1 stop, 2 coast")
-PARAMETER(224, can_status_period, MS, 0, 0, 0, 10000, 10, ALWAYS, "period of the STATUS message; 0 sends none")
-PARAMETER(225, can_telemetry_period, MS, 0, 0, 0, 10000, 20, ALWAYS,
-          "period of TELEMETRY_1 and TELEMETRY_2; 0 sends none")
-PARAMETER(226, can_recovery, MS, 0, 0, 1, 10000, 100, ALWAYS, "time from bus-off to the next attempt")
-
+PLACE(260)
 // Functions of the board (board/functions.h)
 PARAMETER(400, bootstrap_time, MS, 16, 1, 0, 200, BOARD_BOOTSTRAP_TIME, STOPPED,
           "lower devices on before the first pulse; 0 where there are no bootstrap capacitors")

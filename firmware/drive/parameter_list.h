@@ -1,5 +1,6 @@
-// Parameters of excitation, position and control: rows of parameter_list.h.
+// Parameters of excitation, position, control and supervision: rows of a table, see dictionary/parameter_list.h.
 
+PLACE(30)
 // Excitation
 PARAMETER(40, excitation, NONE, 0, 0, 0, 5, 3, STOPPED,
           "0 centred, 1 extended, 2 alternating, 3 by source, 4 long zero vector, 5 as 2, cheapest pair above")
@@ -9,6 +10,7 @@ PARAMETER(43, window_maximum, US, 16, 2, 500, 4000, 3000, ALWAYS, "longest exten
 PARAMETER(44, zero_time, US, 16, 2, 0, 5000, 0, ALWAYS, "zero vector kept beside the extended ones")
 PARAMETER(45, settle_time, US, 16, 2, 400, 2500, 1050, ALWAYS, "from an edge at the motor to the first sample")
 
+PLACE(40)
 // Position and speed
 PARAMETER(60, position_source, NONE, 0, 0, 0, 8, 4, STOPPED,
           "0 encoder, 1 paper, 2 observer and AVV, 3 AVV alone, 4 observer alone; and flux: 5 CONV, 6 PP-01, 7 PP-02, "
@@ -29,15 +31,13 @@ PARAMETER(77, observer_load_step, NM, 20, 2, 1, 10000, 200, ALWAYS,
 PARAMETER(76, cogging_order, NONE, 0, 0, 0, 60, 6, ALWAYS, "cogging periods per electrical turn; 0 learns none")
 PARAMETER(68, observer_windows, NONE, 0, 0, 0, 1, 1, ALWAYS,
           "windows given to the deviation observer: 0 zero vectors only, 1 all")
-PARAMETER(69, zvv_proportional, RAD_PER_S, 8, 1, 1, 2000, 110, ALWAYS, "Kp of the paper's ZVV observer")
-PARAMETER(70, zvv_integral, RAD_PER_S2, 8, 1, 0, 20000, 11000, ALWAYS, "Ki of the paper's ZVV observer")
-PARAMETER(71, id_low_speed, A, 20, 2, -1000, 1000, 0, ALWAYS,
-          "d-axis current below the blend, makes the ZVV deviation observable")
+
+PLACE(60)
 PARAMETER(74, drift_time, MS, 8, 0, 50, 30000, 2000, ALWAYS,
           "time constant of the adaptation of resistance and flux; 30000 is off")
 PARAMETER(78, inertia_adapt, NONE, 0, 0, 0, 1, 1, ALWAYS, "learn the inertia under a large torque; needs the map")
-PARAMETER(73, encoder_counts, NONE, 0, 0, 16, 65536, 4096, STOPPED, "counts of the reference encoder per turn")
 
+PLACE(80)
 // Control
 PARAMETER(80, current_bandwidth, RAD_PER_S, 0, 0, 100, 2600, 1800, STOPPED, "bandwidth of the current loop")
 PARAMETER(81, speed_law, NONE, 0, 0, 0, 1, 0, STOPPED, "0 predictive, 1 PI")
@@ -53,7 +53,32 @@ PARAMETER(87, voltage_use, PERCENT, 16, 1, 500, 1000, 900, ALWAYS,
 PARAMETER(88, weakening_limit, A, 20, 2, 0, 10000, 1200, STOPPED, "largest field-weakening current")
 PARAMETER(89, weakening_gain, A_PER_V, 20, 4, 0, 1000, 20, ALWAYS, "integral gain of field weakening per millisecond")
 
+PLACE(90)
 PARAMETER(330, mtpa, NONE, 0, 0, 0, 1, 0, ALWAYS, "1 adds the d-axis current that gives the most torque per ampere")
 PARAMETER(331, current_divider, NONE, 0, 0, 1, 2, 1, STOPPED, "PWM periods per step of the current control")
 PARAMETER(332, current_corner, NONE, 0, 0, 0, 1, 0, STOPPED,
           "corner of the current's integrator: 0 a quarter of current_bandwidth, 1 R/L")
+
+PLACE(145)
+PARAMETER(101, divergence_limit, DEG, 16, 0, 10, 90, 45, ALWAYS,
+          "disagreement of the estimators that counts as divergence")
+PARAMETER(102, divergence_time, MS, 0, 0, 1, 1000, 15, ALWAYS, "time above divergence_limit before the fault")
+PARAMETER(103, polarity_check, NONE, 0, 0, 0, 1, 1, STOPPED,
+          "test the polarity of the magnet at start, and by the back-EMF once the shaft turns")
+
+PLACE(160)
+PARAMETER(160, stop_time, MS, 0, 0, 10, 60000, 1000, ALWAYS,
+          "longest time to standstill after a stop has brought the reference to zero")
+PARAMETER(521, stall_time, MS, 0, 0, 0, 60000, 2000, ALWAYS,
+          "time at the current limit with a shaft that does not follow, before the fault; 0: none")
+PARAMETER(161, synchronism_floor, V, 16, 1, 5, 1000, 40, ALWAYS, "EMF error allowed at any speed, see synchronism_time")
+PARAMETER(162, synchronism_share, PERCENT, 8, 0, 10, 100, 60, ALWAYS, "share of the EMF added to synchronism_floor")
+PARAMETER(163, synchronism_time, MS, 0, 0, 1, 1000, 5, ALWAYS,
+          "time of an EMF error at its limit, or of estimators a quarter turn apart, before the fault")
+PARAMETER(164, link_regulation, V, 16, 1, 100, 15000, 4050, ALWAYS, "DC-link voltage above which braking is reduced")
+
+PLACE(180)
+PARAMETER(152, saturation_d, PERCENT_PER_A, 24, 3, -10000, 10000, 0, STOPPED,
+          "change of the incremental Ldd per ampere of i_d")
+PARAMETER(153, hold_time, MS, 0, 0, 0, 5000, 0, STOPPED,
+          "time after the start that the shaft is held stiffly, for a brake to open; needs the map")
