@@ -178,9 +178,9 @@ void replace_flash_library(Self self, std::uint32_t erase, std::uint32_t program
 }
 
 // By address: reads, writes, and of the first of them the instruction and the cycle.
-nb::dict unmodelled(Self self) {
+nb::dict dict_of(const chip::Uses& some) {
   nb::dict found;
-  for (const auto& [address, use] : self.board().executing().unmodelled().uses()) {
+  for (const auto& [address, use] : some.uses()) {
     found[nb::int_(address)] = nb::make_tuple(use.reads, use.writes, use.first.place, use.first.cycle);
   }
   return found;
@@ -223,7 +223,9 @@ void bind_code(nb::class_<PythonBoard>& board) {
       .def(
           "load_rom", [](Self self, const chip::CodeBlocks& blocks) { self.board().executing().load_rom(blocks); },
           nb::arg("blocks"))
-      .def("unmodelled", &unmodelled)
+      .def("unmodelled", [](Self self) { return dict_of(self.board().executing().in_vain().unmodelled); })
+      .def("unallowed", [](Self self) { return dict_of(self.board().executing().in_vain().unallowed); })
+      .def("unclocked", [](Self self) { return dict_of(self.board().executing().in_vain().unclocked); })
       .def("replace_flash_library", &replace_flash_library, nb::arg("erase"), nb::arg("program"), nb::arg("verify"),
            nb::arg("scale"));
 }

@@ -110,6 +110,7 @@ bool Core::protection_stops(std::uint32_t address) {
   if (eallow_) return false;
   ++statistics_.protected_writes_lost;
   statistics_.last_protected_address = address;
+  if (code_ != nullptr) code_->note_protected(address);
   return true;
 }
 
@@ -117,6 +118,7 @@ bool Core::gate_stops(bool clocked, std::uint32_t address) {
   if (clocked) return false;
   ++statistics_.gated_accesses;
   statistics_.last_gated_address = address;
+  if (code_ != nullptr && !inspecting_) code_->note_gated(address);
   return true;
 }
 
@@ -198,9 +200,11 @@ std::uint16_t Core::inspect(std::uint32_t address) {
   if (device_at(address) == Device::kNone) return inspect_memory(address);
   if (!has_register(address)) return 0;
   const Statistics before = statistics_;
+  inspecting_ = true;
   const bool wide = device_at(address) == Device::kCan;
   const std::uint16_t value =
       wide ? static_cast<std::uint16_t>(read_can32(address & ~1u) >> 16 * (address & 1u)) : bus_read(address);
+  inspecting_ = false;
   statistics_ = before;
   return value;
 }

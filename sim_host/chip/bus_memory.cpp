@@ -74,9 +74,9 @@ void Core::replace_flash_library(const FlashLibrary& places) {
   code_->replace_flash_library(places);
 }
 
-const Unmodelled& Core::unmodelled() {
+const InVain& Core::in_vain() {
   execute_code();
-  return code_->unmodelled();
+  return code_->in_vain();
 }
 
 void Core::pass(Tick ticks) {

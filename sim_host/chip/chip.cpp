@@ -47,7 +47,7 @@ void Chip::raise_interrupt(unsigned vector) {
 }
 void Chip::load(const CodeBlocks& blocks) { put(core_->memory(), blocks, &Memory::load, "neither flash nor RAM"); }
 void Chip::load_rom(const CodeBlocks& blocks) { put(core_->memory(), blocks, &Memory::load_rom, "no boot ROM"); }
-const Unmodelled& Chip::unmodelled() const { return core_->unmodelled(); }
+const InVain& Chip::in_vain() const { return core_->in_vain(); }
 Memory& Chip::memory() { return core_->memory(); }
 std::uint16_t Chip::inspect(std::uint32_t address) { return core_->inspect(address); }
 

@@ -29,8 +29,8 @@
 #include <vector>
 
 #include "sim_host/chip/code_flash_library.hpp"
+#include "sim_host/chip/in_vain.hpp"
 #include "sim_host/chip/tape.hpp"
-#include "sim_host/chip/unmodelled.hpp"
 #include "sim_host/chip/world.hpp"
 
 namespace stillspin::c28x {
@@ -137,8 +137,8 @@ class Chip {
   void load(const CodeBlocks& blocks);
   /// The same into the boot ROM, of which the model has nothing but the loaders and the vectors.
   void load_rom(const CodeBlocks& blocks);
-  /// For a chip that executes code: what the program accessed that is not modelled.
-  const Unmodelled& unmodelled() const;
+  /// For a chip that executes code: what the program accessed in vain.
+  const InVain& in_vain() const;
 
   /// RAM, security, and the flash, whose cells outlive resets.
   Memory& memory();

@@ -16,7 +16,7 @@
 
 #include "sim_host/chip/c28x/core.hpp"
 #include "sim_host/chip/code_flash_library.hpp"
-#include "sim_host/chip/unmodelled.hpp"
+#include "sim_host/chip/in_vain.hpp"
 #include "sim_host/chip/world.hpp"
 
 namespace stillspin::chip {
@@ -40,9 +40,13 @@ class CodeCpu final : private c28x::Bus {
   /// An access of the program for which the chip has neither register nor memory. Fetches are none: what runs there is
   /// told as a program that ran away.
   void note_unmodelled(std::uint32_t address, bool write) {
-    if (address - cpu_.r.pc > 1) unmodelled_.note(address, write, {cpu_.executing(), cpu_.cycles});
+    if (address - cpu_.r.pc > 1) note(in_vain_.unmodelled, address, write);
   }
-  const Unmodelled& unmodelled() const { return unmodelled_; }
+  /// A write to a protected register with EALLOW clear, and an access to a peripheral whose clock is off: both are
+  /// lost.
+  void note_protected(std::uint32_t address) { note(in_vain_.unallowed, address, true); }
+  void note_gated(std::uint32_t address) { note(in_vain_.unclocked, address, true); }
+  const InVain& in_vain() const { return in_vain_; }
 
   /// The table of vectors in the PIE's RAM, which is no register of the chip's.
   static bool is_vector(std::uint32_t address) { return address - kVectors < 0x100; }
@@ -54,6 +58,10 @@ class CodeCpu final : private c28x::Bus {
   std::uint32_t read_pair(std::uint32_t address) override;
   void write_pair(std::uint32_t address, std::uint32_t value) override;
   std::uint32_t vector(unsigned number, std::uint32_t listed) override;
+
+  void note(Uses& uses, std::uint32_t address, bool write) {
+    uses.note(address, write, {cpu_.executing(), cpu_.cycles});
+  }
 
   template <typename Access>
   void at_the_bus(Access access);
@@ -75,7 +83,7 @@ class CodeCpu final : private c28x::Bus {
   std::array<std::uint16_t, 256> vectors_{};
   std::array<c28x::Region, 5> ram_;
   c28x::Region flash_, frames_, rom_;
-  Unmodelled unmodelled_;
+  InVain in_vain_;
 };
 
 }  // namespace stillspin::chip

@@ -68,7 +68,7 @@ class Core final : public ChipServices {
   void on_jump(Chip::Jump jump) { jump_ = std::move(jump); }
   c28x::Core& execute_code();
   void replace_flash_library(const FlashLibrary& places);
-  const Unmodelled& unmodelled();
+  const InVain& in_vain();
   Tape& tape() {
     if (tape_ == nullptr) tape_ = std::make_unique<Tape>();
     return *tape_;
@@ -224,6 +224,7 @@ class Core final : public ChipServices {
   bool pins_dirty_ = false;
   bool eallow_ = false;
   bool idle_ = false;
+  bool inspecting_ = false;  // a look from outside, which nobody counts
   std::uint16_t revision_ = kRevisionC;
   Interrupts interrupts_;
   Tick limit_ = 0;

@@ -115,6 +115,14 @@ class NativeCode(Protocol):
         """What the program accessed that the chip of the model has not, by address; 8192 addresses at most."""
         ...
 
+    def unallowed(self) -> dict[int, Use]:
+        """The same of writes to protected registers with EALLOW clear, which are lost."""
+        ...
+
+    def unclocked(self) -> dict[int, Use]:
+        """The same of accesses to a peripheral whose clock is off, which are lost; all count as writes."""
+        ...
+
     def replace_flash_library(self, erase: int, program: int, verify: int, scale: int) -> None:
         """Addresses of TI's flash library and its variable, 0 for none: the model's cells do what it would."""
         ...

@@ -1,5 +1,7 @@
 """Executables of the C28x's EABI: words, load addresses and names, and where they are not taken."""
 
+import struct
+
 import pytest
 from c28x_chip import blocks, program
 from elf_files import FUNCTION, OBJECT, SEGMENT_OCTETS, UNTYPED, altered, elf
@@ -83,3 +85,23 @@ def test_a_name_is_found_with_and_without_its_underscore():
             names.address("mai", "--from")
     both = Names(addresses={"main": 1, "_main": 2})
     assert [both.of_name(text) for text in ("main", "_main", "__main")] == [1, 2, 2]
+
+
+def test_what_is_copied_may_have_a_segment_at_either_address(file):
+    """The EABI's way (SPRAC71): words at the address to load to, nothing but room at the one to run at."""
+    there = [BLOCKS[0], Block(0x3F5000, (0x7700, 0x0006))]
+    data = elf(there, symbols=[("copied", 0x9000, 2, FUNCTION)], runs={1: 0x9000})
+    assert read_program(file(data)).blocks == tuple(there)
+    assert elf_files.functions(data) == {0x9000: "copied"}
+    rows = [row[1:] for row in elf_files.sections(data)]
+    assert rows == [(3, 0x3F4000, 0x3F4000), (2, 0x3F5000, 0x3F5000), (2, 0x9000, None), (100, 0x8000, None)]
+
+
+def test_a_section_is_loaded_where_its_content_s_segment_says(file):
+    """Whatever of the two addresses its own head has."""
+    there = [BLOCKS[0], Block(0x3F5000, (0x7700, 0x0006))]
+    data = elf(there, runs={1: 0x9000})
+    address = data.index(struct.pack("<IIII", 0, 1, 6, 0x3F5000)) + 12
+    rows = [row[1:] for row in elf_files.sections(altered(data, address, 0x9000))]
+    assert (2, 0x9000, 0x3F5000) in rows
+    assert not any(name == "(segment)" and load for name, _, _, load in elf_files.sections(data))

@@ -64,3 +64,23 @@ def test_initial_values_that_a_debugger_would_load_are_said(tmp_path, kind, is_s
     said = [line for line in shown(file) if ".cinit" in line]
     assert len(said) == is_said
     assert all(line.endswith("from the flash they are not set: link with --rom_model") for line in said)
+
+
+IN_RAM = f"{BEGIN} .org 0x9000\n .word 1, 2, 3\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "is_said"),
+    [(IN_RAM, True), (BEGIN, False), (" .org 0x8000\nstart: B start,UNC\n .word 1\n", False)],
+    ids=["beside the flash", "flash alone", "RAM alone"],
+)
+def test_words_in_ram_that_only_a_debugger_loads_are_said(tmp_path, text, is_said):
+    """The board has them from the file; a chip that starts from its flash has not."""
+    source = tmp_path / "ram.asm"
+    source.write_text(text)
+    file = tmp_path / "ram.out"
+    done = CliRunner().invoke(cli.app, ["image", "assemble", str(source), "--out", str(file)])
+    assert done.exit_code == 0, done.output
+    said = [line for line in shown(file) if "3 words in RAM that a debugger loads" in line]
+    assert len(said) == is_said
+    assert len(shown(file)) == is_said

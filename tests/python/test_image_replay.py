@@ -233,3 +233,13 @@ def test_registers_have_ti_s_names():
         "EPwm6.TBCTL",
         "0x7101",
     ]
+
+
+def test_a_tape_without_a_sample_compares_nothing_and_says_so(tmp_path):
+    source = tmp_path / "silent.asm"
+    source.write_text(" .org 0x3F7FF6\n LB start\n .org 0x3F4000\nstart: B start,UNC\n")
+    file, tape = str(linked_file(tmp_path, "silent", [source])), str(tmp_path / "silent.tape")
+    assert stillspin("image", "record", tape, "--image", file, "--for", "0.001").exit_code == 0
+    done = stillspin("image", "replay", file, tape)
+    assert done.exit_code == 1
+    assert "nothing was compared: silent.out took 0 samples" in done.stdout

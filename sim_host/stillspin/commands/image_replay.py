@@ -179,7 +179,7 @@ def replay(
     """Give an image the inputs of a recorded run, and compare what it has the gates do, bit for bit.
 
     Compared is every write to the timers of the gates' pulses (ePWM). Exit status 4 when one differs: the first is
-    named by step, register and source line.
+    named by step, register and source line; 1 when the tape has nothing to compare.
     """
     image, tape = opened.read(file, rom), tapes.load(tape_file)
     board = opened.power_on(image, profile_name, motor, seed)
@@ -191,6 +191,12 @@ def replay(
     if difference:
         _say(difference, image)
         raise typer.Exit(ExitCode.DIFFERS)
+    if not any(step < len(tape.samples) for step, *_ in tape.writes):
+        print(
+            f"{file.name}: nothing was compared: {tape.made_by} took {counted(len(tape.samples), 'sample')} of the "
+            "converter and wrote nothing to the ePWM before the last; record for longer (--for)"
+        )
+        raise typer.Exit(ExitCode.SHORT)
     print(
         f"{file.name}: the same {counted(min(writes, len(tape.writes)), 'write')} to the ePWM as {tape.made_by} in "
         f"{counted(min(steps, len(tape.samples)), 'step')}"

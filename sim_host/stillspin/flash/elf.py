@@ -1,7 +1,8 @@
 """Executables of TI's EABI for the C28x: 32-bit ELF, little-endian, machine 141.
 
 Addresses count 16-bit words, sizes and places in the file octets. What is loaded where is in the program headers, whose
-physical address is the one to load to; symbols have run addresses.
+physical address is the one to load to; symbols have run addresses. What is copied before it runs has a segment with its
+words at the one address and a segment without content at the other (SPRAC71, program header).
 Source: the C28x's application binary interface (SPRAC71, chapters on object files) and System V's ELF.
 """
 
@@ -152,14 +153,14 @@ def sections(data: bytes) -> Iterator[tuple[str, int, int, int | None]]:
     names = _HEADER.unpack_from(data)[13]
     strings = heads[names][4] if names < len(heads) else len(data)
     left = [_Piece(*piece) for piece in _pieces(data, header)]
-    for name, kind, flags, address, _, octets, *_ in heads:
+    for name, kind, flags, address, at, octets, *_ in heads:
         if not flags & _ALLOCATED or octets < 2:
             continue
-        loaded = kind != _NO_CONTENT
         load, words = None, octets // 2
         for piece in left:
-            if loaded == (piece.load is not None) and piece.run <= address < piece.run + piece.words:
-                load = None if piece.load is None else piece.load + address - piece.run
+            inside = piece.word_of(None if kind == _NO_CONTENT else at, address)
+            if 0 <= inside < piece.words:
+                load = None if piece.load is None else piece.load + inside
                 piece.named += words
                 break
         yield _text(data, strings + name) or "?", words, address, load
@@ -170,23 +171,33 @@ def sections(data: bytes) -> Iterator[tuple[str, int, int, int | None]]:
 
 @dataclass
 class _Piece:
-    """What a segment has in the file, or takes beyond that; `named` words of it are in sections."""
+    """What a segment has in the file from `at` on, or takes beyond that; `named` words of it are in sections."""
 
     run: int
     words: int
     load: int | None
+    at: int | None
     named: int = 0
 
+    def word_of(self, at: int | None, run: int) -> int:
+        """Which of its words a section begins with, by where its content is in the file; -1 for none.
 
-def _pieces(data: bytes, header: _Header) -> Iterator[tuple[int, int, int | None]]:
+        The EABI has two segments for what is copied, one at either address, and tools may tell a section's by either.
+        """
+        if self.at is None or at is None:
+            return run - self.run if self.at is at else -1
+        return (at - self.at) // 2
+
+
+def _pieces(data: bytes, header: _Header) -> Iterator[tuple[int, int, int | None, int | None]]:
     for index in range(header.segment_count):
-        kind, _, run, load, octets, all_octets, _, _ = _SEGMENT.unpack_from(
+        kind, at, run, load, octets, all_octets, _, _ = _SEGMENT.unpack_from(
             data, header.segments + index * _SEGMENT.size
         )
         if kind == _LOAD and octets:
-            yield run, octets // 2, load
+            yield run, octets // 2, load, at
         if kind == _LOAD and all_octets > octets:
-            yield run + octets // 2, (all_octets - octets) // 2, None
+            yield run + octets // 2, (all_octets - octets) // 2, None, None
 
 
 def _sections(data: bytes) -> list[tuple[int, ...]]:

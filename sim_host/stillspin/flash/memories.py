@@ -106,7 +106,10 @@ class Filled:
 
 
 def shared(owners: Iterable[tuple[str, Iterable[Extent]]]) -> Iterator[tuple[str, str, int, int]]:
-    """Two owners of words and the stretch that both have, first and end by its lower addresses: each pair once."""
+    """Two owners of words and the stretch that both have, first and end by its lower addresses: each pair once.
+
+    Owners of one name are one: ELF tells what is copied twice.
+    """
     taken = sorted(
         (first, end, number, name)
         for number, (name, extents) in enumerate(owners)
@@ -117,7 +120,7 @@ def shared(owners: Iterable[tuple[str, Iterable[Extent]]]) -> Iterator[tuple[str
         for other_first, other_end, other_number, other in taken[at + 1 :]:
             if other_first >= end:
                 break
-            if other_number != number:
+            if other_number != number and other != name:
                 yield name, other, other_first, min(end, other_end)
 
 

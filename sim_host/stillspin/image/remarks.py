@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from stillspin.flash import layout, sections
+from stillspin.counted import counted
+from stillspin.flash import layout, memories, sections
 from stillspin.flash.program import Program
 
 _OF_THE_START = (".cinit", ".pinit", ".init_array")
 
 
 def of(file: Path, program: Program) -> list[str]:
-    """Passwords that lock the chip, and initial values that only a debugger would load."""
-    return [*_passwords(program), *_initial_values(file, program)]
+    """Passwords that lock the chip, initial values and words in RAM that only a debugger would load."""
+    return [*_passwords(program), *_initial_values(file, program), *_in_ram(file, program)]
 
 
 def _passwords(program: Program) -> list[str]:
@@ -35,3 +36,23 @@ def _initial_values(file: Path, program: Program) -> list[str]:
         f"{', '.join(lost)}: initial values of variables that a debugger would load; from the flash they are not set: "
         "link with --rom_model"
     ]
+
+
+def _in_ram(file: Path, program: Program) -> list[str]:
+    """Of a program that begins in the flash, what it has loaded into RAM: of it nothing is there after power-on."""
+    if program.word(layout.BOOT_ENTRY) is None:
+        return []
+    lost = [part for part in sections.read(file, program) if part.load is not None and _is_ram(part.load)]
+    if not lost:
+        return []
+    words = counted(sum(part.words for part in lost), "word")
+    return [
+        f"{', '.join(part.name for part in lost)}: {words} in RAM that a debugger loads, and this board has; in a chip "
+        "that starts from its flash they are not there: give them a load address in the flash and copy them (.data: "
+        "link with --rom_model)"
+    ]
+
+
+def _is_ram(address: int) -> bool:
+    memory = memories.at(address)
+    return memory is not None and memory.group == "RAM"

@@ -1,8 +1,11 @@
-"""What a program used that the virtual chip has not: by name, how often, and from where first."""
+"""What a program used in vain: by name, how often, and from where first.
+
+The virtual chip has it not, or as a chip would lets it not through: protected registers, peripherals without a clock.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from stillspin.core_board import NativeBoard
@@ -41,7 +44,28 @@ def said(board: NativeBoard, names: Names) -> list[str]:
     for address, use in sorted(board.unmodelled().items(), key=lambda row: row[1][3]):
         parts.setdefault(_part(address), _Used([])).uses.append((address, use))
     ran_away = runaway.cycle(board)
-    return [_words(part, used, names, ran_away) for part, used in parts.items()]
+    said_of_parts = [_words(part, used, names, ran_away) for part, used in parts.items()]
+    return [*said_of_parts, *_not_let_through(board, names, ran_away)]
+
+
+def _not_let_through(board: NativeBoard, names: Names, ran_away: int | None) -> Iterator[str]:
+    ways = (
+        (board.unallowed(), "protected registers were written with EALLOW clear"),
+        (board.unclocked(), "a peripheral whose clock is off (PCLKCR0, PCLKCR1) was accessed"),
+    )
+    for uses, what in ways:
+        if uses:
+            first = min(uses.items(), key=lambda row: row[1][3])
+            times = counted(sum(writes for _, writes, *_ in uses.values()), "time")
+            yield f"{what} {times}, {_first(first, names, ran_away)}. It has no effect, as on a chip"
+
+
+def _first(use: tuple[int, Use], names: Names, ran_away: int | None) -> str:
+    address, (_, _, place, cycle) = use
+    behind = ran_away is not None and cycle > ran_away
+    return f"first {_register(address)} at {names.place(place)}" + (
+        ", behind the illegal instruction" if behind else ""
+    )
 
 
 def _part(address: int) -> str:
@@ -52,10 +76,7 @@ def _part(address: int) -> str:
 
 
 def _words(part: str, used: _Used, names: Names, ran_away: int | None) -> str:
-    address, (_, _, place, cycle) = used.first
-    behind = ran_away is not None and cycle > ran_away
-    where = f"first {_register(address)} at {names.place(place)}"
-    where += ", behind the illegal instruction" if behind else ""
+    where = _first(used.first, names, ran_away)
     if part == _ROM:
         return (
             f"the boot ROM was {used.counts()}, {where}. Its words (sine, root, inverse of TI's IQ library) are "

@@ -1,14 +1,15 @@
-// What a program that is executed accesses that the virtual chip has not: by address how often, and where first.
+// What a program that is executed accesses in vain, since the virtual chip has it not or does not let it through: by
+// address how often, and where first.
 
-#ifndef STILLSPIN_SIM_HOST_CHIP_UNMODELLED_HPP
-#define STILLSPIN_SIM_HOST_CHIP_UNMODELLED_HPP
+#ifndef STILLSPIN_SIM_HOST_CHIP_IN_VAIN_HPP
+#define STILLSPIN_SIM_HOST_CHIP_IN_VAIN_HPP
 
 #include <cstdint>
 #include <map>
 
 namespace stillspin::chip {
 
-class Unmodelled {
+class Uses {
  public:
   /// The instruction that accesses, and when.
   struct Access {
@@ -33,6 +34,12 @@ class Unmodelled {
   static constexpr std::size_t kMost = 0x2000;
 
   std::map<std::uint32_t, Use> uses_;
+};
+
+/// What the chip of the model has not, writes to protected registers with EALLOW clear, and accesses to a peripheral
+/// whose clock is off (told as writes).
+struct InVain {
+  Uses unmodelled, unallowed, unclocked;
 };
 
 }  // namespace stillspin::chip
