@@ -101,6 +101,8 @@ _IQ24x:
         ("OR ACC,#0x8000<<15", "OR ACC,#0x8000 << #15"),
         ("LSL ACC,1", "LSL ACC,#1"),
         ("ASR AL,3", "ASR AL,#3"),
+        ("MOVH @5,ACC << 1", "MOVH @5,ACC << #1"),
+        ("MOV *+XAR4[2],ACC << 8", "MOV *+XAR4[2],ACC << #8"),
         ("SPM #0", "SPM 0"),
     ],
 )

@@ -46,6 +46,18 @@ def test_the_serial_plug_is_the_boards(board):
     assert desk.statistics()["lost_writes"] == 0
 
 
+def test_a_program_finds_the_registers_that_the_boot_rom_leaves(board):
+    """TI's boot ROM ends with all of them cleared, OBJMODE, M0M1MAP and VMAP set, interrupts masked, SP at M1."""
+    desk = board("echo")
+    desk.stop_at([0x3F7FF6])
+    desk.advance(8 * MILLISECOND)
+    assert desk.halted
+    left = {name: value for name, value in desk.registers().items() if value}
+    assert left == {"PC": 0x3F7FF6, "SP": 0x0400, "ST1": 0x0A0B}
+    watchdog, pll, pie = (desk.inspect(address) for address in (0x7029, 0x7021, 0x0CE0))
+    assert (watchdog & 0x40, pll & 0xF, pie & 1) == (0, 0, 0), "watchdog on, PLL bypassed, PIE off"
+
+
 def test_the_converter_sees_the_plant(board):
     desk = board("control")
     desk.advance(20 * MILLISECOND)

@@ -24,7 +24,7 @@ stay:   B stay,UNC
 away:   MOVL XAR7,#{target:#x}
         LB *XAR7
         .org 0x3F4020
-data:   .word 0xE2AF
+data:   .word 0xE2AF, 0
 """
 
 
@@ -59,6 +59,7 @@ def powered():
         (0x008000, "0x008000, L0, in cycle ", "code that runs from RAM was not copied there"),
         (0x3F5000, "0x3F5000 data+4064, sector A, in cycle ", "nothing was loaded there"),
         (0x3FF200, "0x3FF200, boot ROM, in cycle ", "a function of the boot ROM was called"),
+        (0x3F4021, "0x3F4021 data+1, sector A, in cycle ", "it is ITRAP0, which somebody wrote there, or data"),
         (0x3F4020, "0x3F4020 data, sector A, in cycle ", "it is data, or code of a C28x with a floating"),
     ],
 )

@@ -85,6 +85,7 @@ _OTHER_SPELLINGS = tuple(
     for pattern, instead in (
         (r"((?:ADD|SUB|MOV|AND|OR|XOR) ACC,#[^<]+)", r"\1<<#0"),
         (r"((?:ADD|SUB|MOV|AND|OR|XOR) ACC,[^<]+<<)([^#T].*)", r"\1#\2"),
+        (r"(MOVH? [^,]+,ACC<<)([^#].*)", r"\1#\2"),
         (r"((?:LSL|LSR|ASR|SFR|LSL64|LSR64|ASR64) [^,]+,)([^#T].*)", r"\1#\2"),
         (r"SPM #(.+)", r"SPM \1"),
         (r"SUB ([^,]+),#(.+)", r"ADD \1,#-(\2)"),  # there is no such code of its own

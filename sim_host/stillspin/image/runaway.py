@@ -59,6 +59,8 @@ def _usually(place: int, word: int) -> str:
         return _POINTER
     if word == layout.ERASED:
         return f"nothing was loaded there; or {_POINTER}"
+    if word == _EMPTY and place in layout.FLASH:
+        return "it is ITRAP0, which somebody wrote there, or data"
     if word == _EMPTY:
         return f"code that runs from RAM was not copied there before it was called; or {_POINTER}"
     return "it is data, or code of a C28x with a floating-point unit, which an F2808 has not (--float_support)"
