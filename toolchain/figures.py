@@ -41,7 +41,7 @@ class Step:
     seeds: int = 1
 
 
-_PAPER_A = "reproduce A09 A10 A11 A12 A13 A15 A16 A17 A18a A18b A18c A19 S12 S13 --scheme paper"
+_PAPER_A = "reproduce A10 A11 A15 A16 A17 A18a A18b A18c A19 S12 S13 --scheme paper"
 _PAPER_B = "reproduce B07 B09 B14 B15 B16 B17 B18 B19 B20 B21 B22 B23 B24"
 _SEEDS = "reproduce A10 A11 A15 A16 A17 A18a A18b A18c S13 --scheme paper --seed SEED"
 _NOISE = "--profile build/figures/ideal-noise.toml"  # as `stillspin run ID --profile ideal --set adc.noise=1.2`

@@ -19,9 +19,10 @@ sys.path.insert(0, str(ROOT / "toolchain"))
 
 import figures as renewal  # noqa: E402
 import keep  # noqa: E402
-from book import records  # noqa: E402
+from book import gather, records  # noqa: E402
 
 DATA = ROOT / "docs/figures"
+SEEDS = ((1.0, -3.0, 2.0), (50.0, None, None))
 DUE = "the drive has other figures than docs/figures: run make figures"
 
 
@@ -61,6 +62,38 @@ def test_every_record_says_what_made_it() -> None:
         assert content["command"].startswith(("stillspin ", "make ")), path
         assert len(content["sources"]) == 16 or content["sources"] == "unknown", path
         assert content["figures"], path
+
+
+def test_of_several_seeds_the_worst_is_kept_and_how_many_were_lost() -> None:
+    each = [
+        {"A10": {"peak": {"value": v, "unit": "deg"}, "dip": {"value": w, "unit": "rpm"}}}
+        for v, w in zip(*SEEDS, strict=True)
+    ]
+    found = gather.worst(each)["A10"]
+    assert found["peak"] == {"value": -3.0, "lost": 0, "unit": "deg"}
+    assert found["dip"] == {"value": None, "lost": 2, "unit": "rpm"}
+
+
+def test_a_command_with_several_seeds_runs_with_each(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    ran: list[list[str]] = []
+
+    def run_command(words: list[str], **_: object) -> subprocess.CompletedProcess[str]:
+        ran.append([str(word) for word in words[1:]])
+        out = tmp_path / "two"
+        out.mkdir(exist_ok=True)
+        value = float(words[-3])
+        metrics = {"scenarios": {"A10": {"peak": {"value": value, "unit": "deg"}}}}
+        (out / "metrics.json").write_text(json.dumps(metrics), encoding="utf-8")
+        return subprocess.CompletedProcess(words, 0)
+
+    monkeypatch.setattr(renewal, "WORK", tmp_path)
+    monkeypatch.setattr(renewal, "ROOT", tmp_path)
+    monkeypatch.setattr(renewal.subprocess, "run", run_command)
+    step = renewal.Step("two", "reproduce A10 --seed SEED --out OUT", seeds=2)
+    assert renewal.carry_out(step, "sum")
+    assert [words[-3] for words in ran] == ["1", "2"]
+    record = records.load(tmp_path)["two"]
+    assert record["figures"]["metrics"]["A10"]["peak"] == {"value": 2.0, "lost": 0, "unit": "deg"}
 
 
 @pytest.fixture
