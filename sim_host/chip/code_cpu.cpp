@@ -86,7 +86,7 @@ void CodeCpu::run(std::uint32_t entry) {
     if (stop == c28x::Stop::kIdle) sleep();
     if (stop == c28x::Stop::kBreakpoint) halt();
     if (stop == c28x::Stop::kUnmodelled) {
-      chip_.model_error("the program sets AMODE, which is not modelled, at address", cpu_.r.pc);
+      chip_.model_error("address mode 1 is not modelled, and the program sets AMODE", 1);
       chip_.leave_firmware();
     }
   }

@@ -162,3 +162,33 @@ def test_what_a_reset_ends_does_not_go_on_behind_it(powered):
     board.advance(20 * MILLISECOND)
     assert board.statistics()["resets"] >= 2
     assert set(board.within()[19, 0x66]) == {0x010000, 0x66}
+
+
+ADDRESS_MODE_1 = """
+        .org 0x3F7FF6
+        LB start
+        .org 0x3F4000
+start:  NOP
+        SETC AMODE
+stay:   B stay,UNC
+"""
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["image", "time", "{}", "--for", "0.001"],
+        ["board", "--image", "{}", "--for", "0.001", "--speed", "0"],
+        ["image", "time", "{}", "A10"],
+    ],
+    ids=["time", "board", "scenario"],
+)
+def test_a_board_that_cannot_go_on_says_where_the_program_had_come_to(tmp_path, command):
+    source = tmp_path / "mode.asm"
+    source.write_text(ADDRESS_MODE_1)
+    file = str(linked_file(tmp_path, "mode", [source]))
+    done = CliRunner().invoke(cli.app, [word.format(file) for word in command])
+    assert done.exit_code == 1
+    said = done.stderr + str(done.exception or "")
+    assert "address mode 1 is not modelled, and the program sets AMODE" in said
+    assert "; the program had come to 0x3F4002 stay (mode.asm:7)" in said

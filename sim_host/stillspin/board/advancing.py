@@ -8,14 +8,18 @@ from contextlib import contextmanager
 from stillspin.errors import CampaignError
 
 
+class StoppedError(CampaignError):
+    """The chip of a virtual board cannot go on."""
+
+
 @contextmanager
 def advancing() -> Iterator[None]:
     """Around what lets a board's time pass.
 
     Raises:
-        CampaignError: the board stopped, with its words.
+        StoppedError: the board stopped, with its words.
     """
     try:
         yield
     except RuntimeError as error:
-        raise CampaignError(f"the virtual board stopped: {error}") from error
+        raise StoppedError(f"the virtual board stopped: {error}") from error

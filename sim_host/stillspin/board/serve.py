@@ -62,6 +62,8 @@ class Options:
     parent: int | None = None
     debugger: Debugger | None = None
     remarks: Callable[[NativeBoard], list[str]] | None = None
+    placed: Callable[[CampaignError, NativeBoard], CampaignError] | None = None
+    """What an error is with where the program had come to."""
 
 
 def serve(board: NativeBoard, options: Options, title: str) -> None:
@@ -92,10 +94,10 @@ def serve(board: NativeBoard, options: Options, title: str) -> None:
             wall = time.monotonic() - began
         ran = desk.time
         remarks = options.remarks(board) if options.remarks else []
-    except CampaignError:
+    except CampaignError as error:
         for words in options.remarks(board) if options.remarks else []:
             print(words)
-        raise
+        raise (options.placed(error, board) if options.placed else error) from None
     finally:
         if options.eeprom:
             eeprom_file.keep(board, options.eeprom)

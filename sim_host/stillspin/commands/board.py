@@ -127,7 +127,10 @@ def board(
     debugger = Remote(powered, program.names, gdb) if program and gdb is not None else None
     title += f", gdb: target remote localhost:{debugger.port}" if debugger else ""
     remarks = partial(opened.warnings, image=program) if program else None
-    options = serve.Options(speed, serial_link, can_link, socketcan, load, end, eeprom, parent, debugger, remarks)
+    placed = partial(opened.placed, image=program) if program else None
+    options = serve.Options(
+        speed, serial_link, can_link, socketcan, load, end, eeprom, parent, debugger, remarks, placed
+    )
     try:
         serve.serve(powered, options, title)
     finally:

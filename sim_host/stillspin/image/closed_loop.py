@@ -23,7 +23,7 @@ from stillspin.drive import describe, values
 from stillspin.drive.protocol import CONTROL_PERIOD, STREAM_EVENT, Command, Request, Words
 from stillspin.drive.state import FAULT, READY, RUN, RawStatus
 from stillspin.drive.table import Table
-from stillspin.errors import StillspinError
+from stillspin.errors import CampaignError, StillspinError
 from stillspin.image import opened
 from stillspin.image.opened import Image
 from stillspin.image.run_record import RASTER, Played, RunRecord
@@ -110,6 +110,8 @@ def play_on(
     began = time.perf_counter()
     try:
         loop.carry_out()
+    except CampaignError as error:
+        reason = str(opened.placed(error, board, image) if image else error)
     except (_BrokenOffError, StillspinError) as error:
         reason = str(error)
     try:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from stillspin import core
 from stillspin.board import power
-from stillspin.board.advancing import advancing
+from stillspin.board.advancing import StoppedError, advancing
 from stillspin.board.desk import TICKS_PER_SECOND
 from stillspin.board.image import blocks_of
 from stillspin.cases import profile
@@ -131,6 +131,13 @@ def say(board: NativeBoard, image: Image) -> None:
         print(words)
 
 
+def placed(error: CampaignError, board: NativeBoard, image: Image) -> CampaignError:
+    """The same error, of a board that stopped with where its program had come to."""
+    if not isinstance(error, StoppedError):
+        return error
+    return CampaignError(f"{error}; the program had come to {image.names.place(board.registers()['PC'])}")
+
+
 @contextmanager
 def closing(board: NativeBoard, image: Image) -> Iterator[None]:
     """A board that is switched off at the end.
@@ -143,9 +150,10 @@ def closing(board: NativeBoard, image: Image) -> Iterator[None]:
     except CampaignError as error:
         for words in unmodelled.said(board, image.names):
             print(f"{WARNING}{words}")
+        there = placed(error, board, image)
         if ran_away := runaway.said(board, image.names):
-            raise CampaignError(f"{error}. Before that, {ran_away}") from error
-        raise
+            raise CampaignError(f"{there}. Before that, {ran_away}") from error
+        raise there from None
     finally:
         board.close()
 
