@@ -13,6 +13,7 @@ import os
 import pickle
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 from stillspin.core_board import NativeBoard
 from stillspin.counted import counted
@@ -72,6 +73,9 @@ class Report:
     differences: list[tuple[int, list[Difference]]] = field(default_factory=list)
 
 
+_Found = TypeVar("_Found")
+
+
 @dataclass(frozen=True)
 class _AtEnd:
     """What is there at the end."""
@@ -110,6 +114,12 @@ def inject(board: NativeBoard, stretch: Stretch, progress: Callable[[int], None]
             f"0x{stretch.begin:06X}, the beginning, was not reached within {stretch.seconds:g} s; give it longer with "
             "--within"
         )
+    lost_at = _in_a_copy(lambda: _where_lost(board, stretch))
+    if lost_at is not None:
+        raise CampaignError(
+            f"0x{stretch.end:06X}, the end, was not reached within {stretch.seconds:g} s; the program is at "
+            f"0x{lost_at:06X}; give it longer with --within"
+        )
     tried = [_try(board, stretch, first=True)]
     while len(tried) == 1 or tried[-1].address != stretch.end:
         if len(tried) > stretch.most:
@@ -125,6 +135,11 @@ def inject(board: NativeBoard, stretch: Stretch, progress: Callable[[int], None]
         if progress:
             progress(len(tried))
     return _compared(tried)
+
+
+def _where_lost(board: NativeBoard, stretch: Stretch) -> int | None:
+    """Where the program is when it has not come to the end in time, without an interrupt that was asked for."""
+    return None if opened.run_to(board, [stretch.end], stretch.seconds) else board.registers()["PC"]
 
 
 def _try(board: NativeBoard, stretch: Stretch, *, first: bool = False) -> _Tried:
@@ -173,7 +188,7 @@ def _below_the_stack(pointer: int) -> Watched:
     return [(first, (pointer if first <= pointer < end else end) - first) for first, end in layout.RAM]
 
 
-def _in_a_copy(work: Callable[[], _AtEnd | None]) -> _AtEnd | None:
+def _in_a_copy(work: Callable[[], _Found | None]) -> _Found | None:
     """What a copy of this process finds."""
     reader, writer = os.pipe()
     child = os.fork()
@@ -189,8 +204,8 @@ def _in_a_copy(work: Callable[[], _AtEnd | None]) -> _AtEnd | None:
         octets = pipe.read()
     os.waitpid(child, 0)
     if not octets:
-        raise CampaignError("the chip could not go on after an interrupt that was asked for")
-    found: _AtEnd | None = pickle.loads(octets)  # this program's own words
+        raise CampaignError("the chip could not go on in the stretch, or after an interrupt that was asked for in it")
+    found: _Found | None = pickle.loads(octets)  # this program's own words
     return found
 
 
