@@ -287,6 +287,20 @@ def test_the_rom_takes_one_wait(image, rom):
     assert cycles("0x3FF000") == cycles("0x3F8000") + 1
 
 
+def test_code_of_the_boot_rom_runs_and_is_timed(image, tmp_path):
+    file = image(READS_RAM.replace("        MOV AL,*XAR7\n", "        LCR 0x3FF600\n"))
+    dump = tmp_path / "code.bin"
+    dump.write_bytes(struct.pack("<1538H", *[0] * 0x600, 0x9A05, 0x0006))  # MOVB AL,#5; LRETR
+    there = opened.read(Path(file), dump)
+    board = opened.power_on(there, "bench", "A", 1)
+    with opened.closing(board, there):
+        assert opened.run_to(board, [there.names.addresses["stay"]], 0.001)
+        assert board.registers()["ACC"] == 5
+    done = CliRunner().invoke(cli.app, ["image", "time", file, "--for", "0.001", "--rom", str(dump)])
+    assert "(code without a name) " in done.stdout
+    assert "(outside of the memories) " not in done.stdout
+
+
 def test_every_command_takes_it(image, rom, tmp_path):
     for command, status in commands(image(), str(tmp_path / "tape")):
         assert ask(*command, "--rom", rom[1][0]) == (status, []), command

@@ -37,7 +37,10 @@ MEMORIES = (
     Memory("boot ROM", layout.BOOT_ROM, loaded=False),
 )
 NOWHERE = "nowhere"
-_STRETCHES = (range(0x0800), range(0x8000, 0xC000), range(0x3D7800, 0x3D7C00), layout.FLASH, range(0x3F8000, 0x3FC000))
+_STRETCHES = (
+    *(range(0x0800), range(0x8000, 0xC000), range(0x3D7800, 0x3D7C00), layout.FLASH, range(0x3F8000, 0x3FC000)),
+    layout.BOOT_ROM,
+)
 """Where code may be without a gap."""
 
 
