@@ -93,6 +93,15 @@ def test_opcodes_do_what_the_standard_says(version):
     assert lines.places("ain.c", 12) == []
 
 
+def test_paths_of_windows_are_written_and_found_with_slashes():
+    """Most who have TI's compiler have it there."""
+    lines = debug_lines.read(unit(at(0x100) + b"\1" + END, folders=("C:\\drive\\src",), files=(("..\\main.c", 1),)))
+    assert str(lines.at(0x100)) == "C:/drive/src/../main.c:1"
+    assert lines.places("main.c", 1) == lines.places("..\\main.c", 1) == [0x100]
+    absolute = debug_lines.read(unit(at(0x100) + b"\1" + END, files=(("C:\\main.c", 1),)))
+    assert str(absolute.at(0x100)) == "C:/main.c:1"
+
+
 def test_steps_of_instructions_files_and_unknown_opcodes():
     opcodes = at(0x100) + b"\5\x07\x06\x04\2\1" + b"\2\3\4\1\x03\1\1" + b"\0\3\x80\1\1" + END
     lines = debug_lines.read(unit(opcodes, step=2, files=(("a.c", 0), ("b.c", 1))))
@@ -145,6 +154,10 @@ def test_damaged_and_unknown_units_are_left_out():
         assert debug_lines.read(good + bad).at(0x20) is None
     assert not debug_lines.read(struct.pack("<I", 0xFFFFFFFF) + bytes(40))
     assert not debug_lines.read(good[:-8])
+
+
+def test_a_range_of_no_lines_is_damage():
+    assert not debug_lines.read(unit(at(0x100) + b"\x20" + END, span=0))
 
 
 def test_an_end_gives_way_to_a_beginning():

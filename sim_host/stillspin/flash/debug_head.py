@@ -65,6 +65,8 @@ def read(octets: Octets, strings: Strings) -> Head:
     octets.number(1)  # whether a row begins a statement at first
     line_base = octets.signed(1)
     line_range, base = octets.number(1), octets.number(1)
+    if not line_range:
+        raise ValueError("a range of no lines")
     lengths = [octets.number(1) for _ in range(1, base)]
     files = _described_files(octets, strings) if version >= _DESCRIBED else dict(enumerate(_files(octets), 1))
     octets.at = begins
@@ -128,4 +130,7 @@ def _forms(octets: Octets, strings: Strings) -> dict[int, Callable[[], str | int
 
 
 def _joined(folder: str, name: str) -> str:
-    return (f"{folder}/{name}" if folder else name).replace("\\", "/")
+    """A path in slashes; a name that is absolute has no folder."""
+    path = name.replace("\\", "/")
+    absolute = path.startswith("/") or path[1:3] == ":/"
+    return path if absolute or not folder else f"{folder}/{path}".replace("\\", "/")

@@ -60,6 +60,7 @@ class Lines:
 
     def places(self, file: str, number: int) -> list[int]:
         """Addresses at which a line begins; the file may be given by the end of its path."""
+        file = file.replace("\\", "/")
         return [
             address
             for address, source in self._rows
