@@ -19,6 +19,7 @@ extern "C" {
 
 typedef struct {
   bool stepped;                 // a host steps the drive: it and its parameters are a simulation's (hil/)
+  bool loading;                 // the parameters are being read: BOOT goes on (store/)
   volatile uint16_t heartbeat;  // meanwhile, in the place of the drive's own
   uint16_t store_work;          // what the parameter store is at; 0: nothing (store/)
   uint16_t refusals;            // commands that were typed and not carried out (console/)

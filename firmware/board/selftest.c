@@ -1,5 +1,6 @@
 #include "firmware/board/selftest.h"
 
+#include "firmware/api/status.h"
 #include "firmware/base/clear.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
@@ -58,7 +59,7 @@ drive_fault_t selftest_service(void) {
   if (selftest.pair < HAL_SELFTEST_PAIRS && !drive_is_energised()) march();
   flash_sum_service(&selftest.flash);
   judge(selftest.flash.state != FLASH_SUM_WRONG, SELFTEST_FLASH);
-  if (drive.loading) return FAULT_NONE;  // what is wired is not known yet
+  if (feature_status.loading) return FAULT_NONE;  // what is wired is not known yet
   const int32_t off = q_abs_sat((int32_t)selftest.reference - BOARD_REFERENCE_CODE);
   judge(parameters.reference_input == 0 || (off < REFERENCE_OFF && selftest.ground < (uint16_t)REFERENCE_OFF),
         SELFTEST_CONVERTER);

@@ -237,7 +237,7 @@ void can_node_service(void) {
   // With the host in the loop the drive and its parameters are a simulation's: the bus carries records and knows
   // nothing of the rest.
   const bool own_drive = !feature_status.stepped;
-  if (drive.loading) return;
+  if (feature_status.loading) return;
   if (own_drive) follow_parameters();
   hal_can_service();
   watch_bus(now_ms);

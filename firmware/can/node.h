@@ -21,8 +21,8 @@ extern "C" {
 /// is room of RECORD_MAX - 2; 0 for none.
 typedef uint16_t (*can_answer_t)(const uint16_t* request, uint16_t count, uint16_t* answer);
 
-/// Power-on state, off the bus until the saved rate and number are known (drive_t.loading): at another rate than the
-/// bus' a node disturbs all others. `answer` may be NULL: no records then.
+/// Power-on state, off the bus until the saved rate and number are known (feature_status.loading): at another rate than
+/// the bus' a node disturbs all others. `answer` may be NULL: no records then.
 void can_node_reset(can_answer_t answer);
 /// The same, with the answers of the serial port (power_on.c).
 void can_power_on(void);

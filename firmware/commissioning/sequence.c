@@ -126,7 +126,9 @@ void commissioning_service(drive_t* d) {
 const state_t commissioning_state = {commissioning_begin, commissioning_step, commissioning_estimate,
                                      commissioning_abandon};
 
-void drive_command_commission(void) { drive.request.commission = true; }
+static const state_request_t commission = {DRIVE_COMMISSION, DRIVE_READY};
+
+void drive_command_commission(void) { drive.request.begin = &commission; }
 
 commissioning_outcome_t drive_commissioning_outcome(void) { return commissioning.outcome; }
 

@@ -55,8 +55,7 @@ static void begin(drive_t* d) {
     d->control.references.current_q20.q = 0;
   }
   commissioning.spin.begun = true;
-  d->periods = 0;  // as at the beginning of a run
-  d->flags.spins = true;
+  drive_begin_spin(d);
   d->flags.frozen = false;
   d->control.target_bpp = d->control.ramp.value;
 }

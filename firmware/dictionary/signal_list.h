@@ -26,8 +26,8 @@ SIGNAL(voltage_q, V, 16, DRIVE, d->control.command_q16.q, "q-axis voltage comman
 SIGNAL(voltage_alpha, V, 16, DRIVE, d->modulation.command_q16.alpha,
        "alpha-axis mean voltage for the next period, device drops added")
 SIGNAL(voltage_beta, V, 16, DRIVE, d->modulation.command_q16.beta, "beta-axis mean voltage for the next period")
-SIGNAL(deviation_q, A_PER_S, 8, ROTOR, q_mul_sat(d->position.deviation_q20, 10000L, 12),
-       "q-axis current deviation under zero vectors; position_source 0 and 1 only")
+
+PLACE(17)
 SIGNAL(link_voltage, V, 16, DRIVE, d->samples.link_q16, "DC-link voltage")
 SIGNAL(load_torque, NM, 16, ROTOR, q_mul_sat(d->position.selected.load_accel_q8, d->model.torque_per_accel_q24, 24),
        "estimated load torque")

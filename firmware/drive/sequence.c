@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "firmware/api/status.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
@@ -100,21 +101,19 @@ static void begin_state(drive_t* d, drive_state_t state, drive_state_t behind) {
 
 static void take_requests(drive_t* d) {
   drive_request_t* const r = &d->request;
-  if (!(r->start || r->stop || r->coast || r->reset || r->commission || r->look)) return;
+  if (!(r->start || r->stop || r->coast || r->reset || r->begin != NULL)) return;
   if (r->coast && drive_is_energised()) coast(d);
   if (r->coast) {
     r->start = false;
-    r->look = false;
+    r->begin = NULL;
   }
   r->coast = false;
   if (r->reload) return;  // first the changed parameters, then the start
   if ((d->state == DRIVE_START || d->state == DRIVE_COMMISSION) && r->stop) break_off(d);
   if (d->state == DRIVE_READY && r->start) {
     begin_state(d, DRIVE_START, DRIVE_RUN);
-  } else if (d->state == DRIVE_READY && r->commission) {
-    begin_state(d, DRIVE_COMMISSION, DRIVE_READY);
-  } else if (d->state == DRIVE_READY && r->look) {
-    begin_state(d, DRIVE_START, DRIVE_READY);
+  } else if (d->state == DRIVE_READY && r->begin != NULL) {
+    begin_state(d, r->begin->state, r->begin->behind);
   }
   if (d->state == DRIVE_RUN && r->stop) begin_stop(d);
   if (d->state == DRIVE_FAULT && r->reset) {
@@ -125,8 +124,7 @@ static void take_requests(drive_t* d) {
   r->start = false;
   r->stop = false;
   r->reset = false;
-  r->commission = false;
-  r->look = false;
+  r->begin = NULL;
 }
 
 // Before the state's step, which may begin with it. Command and target are written at this level alone, so that a fault
@@ -148,7 +146,7 @@ void drive_sequence(drive_t* d) {
   take_speed(d);
   switch (d->state) {
     case DRIVE_BOOT:
-      if (!d->loading) drive_enter(d, DRIVE_CALIBRATE);
+      if (!feature_status.loading) drive_enter(d, DRIVE_CALIBRATE);
       break;
     case DRIVE_CALIBRATE:
       calibrate(d);

@@ -50,7 +50,6 @@ typedef struct {
   sensor_match_t sensors;
   bool is_near;             // what was last regressed is near enough to learn from
   int32_t torque_accel_q8;  // acceleration of the torque of the measured current
-  int32_t deviation_q20;    // D of the zero vectors in the frame in use, A per period
 } drive_position_t;
 
 typedef struct {

@@ -35,6 +35,11 @@ typedef struct {
 /// By drive_state_t; NULL where the drive itself does all there is, or this edition leaves it out (editions/).
 extern const state_t* const drive_states[];
 
+/// From READY: which state is to begin, and what is to follow it.
+typedef struct {
+  drive_state_t state, behind;
+} state_request_t;
+
 /// What the state in hand says to the other steps. It alone sets these, and the next one begins with none of them.
 typedef struct {
   drive_state_t behind;  // START: what it leads to; READY: how the shaft turns is all that is asked

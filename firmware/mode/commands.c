@@ -1,5 +1,7 @@
 // Commands: what the background level leaves for the control interrupt.
 
+#include <stddef.h>
+
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
 
@@ -10,8 +12,7 @@ void drive_command_start(void) { drive.request.start = true; }
 // What was asked for before and not carried out yet is not wanted any more: it must not outlive the stop that follows.
 static void forget_starts(void) {
   drive.request.start = false;
-  drive.request.commission = false;
-  drive.request.look = false;
+  drive.request.begin = NULL;
 }
 
 void drive_command_stop(void) {

@@ -48,6 +48,11 @@ void drive_enter(drive_t* d, drive_state_t state) {
   begin(d, state);
 }
 
+void drive_begin_spin(drive_t* d) {
+  d->periods = 0;
+  d->flags.spins = true;
+}
+
 static void note(const drive_t* d, drive_fault_t fault) {
   fault_record_t r;
   r.time_ms = d->time_ms;

@@ -14,7 +14,8 @@
 #include "firmware/text/packed_text.h"
 
 typedef struct {
-  bool start, stop, coast, reset, reload, commission, look;
+  bool start, stop, coast, reset, reload;
+  const state_request_t* begin;  // a feature's, in the place of a start; NULL: none
   // A speed and its value, which is written first: neither may change places.
   volatile bool speed;
   volatile int32_t speed_rpm_q16;
@@ -33,7 +34,6 @@ typedef struct drive {
   volatile uint16_t sliced;  // 1: a phase control has the legs (interfaces/phase_control.h)
   bool config_valid;
   bool conflict_known;  // of the parameters that the configuration was made of
-  bool loading;         // by the background level: the store is being read, BOOT goes on
   drive_request_t request;
   const position_source_t* source;  // by the parameter, selected when that changes
   packed_text_t conflict;           // why they do not fit together, or PACKED_NONE
@@ -84,6 +84,9 @@ int32_t drive_rpm_q16(const drive_t* d, int32_t speed_bpp);
 
 /// Latches a fault with its circumstances (fault_history.h) and opens the power stage. The speed command is forgotten.
 void drive_trip(drive_t* d, drive_fault_t fault);
+
+/// COMMISSION, at rest until now: speed control and position source have the shaft, as at the beginning of a run.
+void drive_begin_spin(drive_t* d);
 
 /// Enters a state and starts counting its periods.
 void drive_enter(drive_t* d, drive_state_t state);

@@ -9,6 +9,9 @@
 extern const position_source_t encoder_source, paper_source, observer_avv_source, avv_source, observer_source,
     flux_source;
 
+/// D of the zero vectors in the frame in use, A per period, by the sources that look for it.
+extern int32_t source_deviation_q20;
+
 /// In its slots: inverse inductances and match of the sensors, resistance and flux. Resistance and flux are learnt once
 /// the drive runs; until then the sensors have that slot.
 void source_learn(drive_t* d, const regression_t* r);

@@ -1,5 +1,6 @@
 #include "firmware/store/power_on.h"
 
+#include "firmware/api/status.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
 #include "firmware/store/store.h"
@@ -7,17 +8,17 @@
 #include "hal/hal_sci.h"
 
 void store_load_at_power_on(void) {
-  if (drive.loading) {
+  if (feature_status.loading) {
     store_service();
     return;
   }
   (void)hal_nvm_init();  // a bus that hangs is the first job's business
-  drive.loading = true;
+  feature_status.loading = true;
   store_begin();
 }
 
 void store_end_loading(void) {
-  if (!drive.loading || store_is_busy() || drive.request.reload) return;
-  drive.loading = false;
+  if (!feature_status.loading || store_is_busy() || drive.request.reload) return;
+  feature_status.loading = false;
   if (parameters.baud_rate != (int32_t)HAL_SCI_USUAL_BAUD) (void)hal_sci_init((uint32_t)parameters.baud_rate);
 }

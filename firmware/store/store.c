@@ -57,6 +57,7 @@ void store_reset(void) {
   kept_known = true;
   unsaved = 0;
   feature_status.store_work = WORK_NONE;
+  feature_status.loading = false;
   state = STORE_EMPTY;
   report = nothing;
   report.slot = SLOTS;

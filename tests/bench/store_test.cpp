@@ -157,7 +157,7 @@ TEST(BoardStore, AMemoryThatIsReadAtOnceIsInForce) {
   board.run_for(100 * kMs);
   EXPECT_EQ(store_state(), STORE_MIGRATED);
   EXPECT_EQ(drive.state, DRIVE_READY);
-  EXPECT_FALSE(drive.loading);
+  EXPECT_FALSE(feature_status.loading);
   EXPECT_EQ(board.chip.inspect(EPWM_BASE(1) + EPWM_DBRED), 180);
 }
 

@@ -100,7 +100,7 @@ TEST_F(Guard, AFormerClientIsToldWhyItMayNotStart) {
     EXPECT_EQ(give(code, 1).status(), RANGE);
     EXPECT_EQ(give(code, 1).text(), "a guarded start needs the client's number: this client is too old");
   }
-  EXPECT_FALSE(inside::request().start || inside::request().commission);
+  EXPECT_FALSE(inside::request().start || inside::request().begin != nullptr);
   EXPECT_EQ(give(COMMAND_SPEED, 1).status(), OK) << "of which the lowest bit says nothing";
   for (int octets = 1; octets < 4; ++octets) EXPECT_EQ(ask(REQUEST_STATUS, little(1, octets)).status(), LENGTH);
 }

@@ -51,7 +51,7 @@ TEST_F(ConsoleHands, ALineThatWasLeftDoesNotStartTheMotor) {
   NEEDS("commissioning");
   for (const char* line : {"start free", "start hold", "commission start free"}) {
     EXPECT_EQ(after(line, kLong), std::string("\r\n") + kTooOld) << line;
-    EXPECT_FALSE(inside::request().start || inside::request().commission || comm_watchdog_is_on()) << line;
+    EXPECT_FALSE(inside::request().start || inside::request().begin != nullptr || comm_watchdog_is_on()) << line;
   }
   EXPECT_FALSE(has(after("start free", kShort), "typed over 5 s ago"));
   EXPECT_TRUE(inside::request().start);
@@ -190,7 +190,7 @@ TEST_F(ConsoleHands, AStartNeedsAGuardOrTheWordThatItNeedsNone) {
   for (const char* line : {"start", "commission start", "start now", "start hold free", "commission start hold 1"}) {
     EXPECT_EQ(command(line), ways) << line;
   }
-  EXPECT_FALSE(inside::request().start || inside::request().commission);
+  EXPECT_FALSE(inside::request().start || inside::request().begin != nullptr);
 }
 
 TEST_F(ConsoleHands, FreeSaysWhatItMeans) {
@@ -308,7 +308,7 @@ TEST_F(ConsoleHands, ASessionThatWasThereIsNoGuard) {
   run(9000);
   EXPECT_FALSE(has(command("commission start", 100), "nobody would watch"));
   (void)command("stop");
-  inside::request().commission = false;
+  inside::request().begin = nullptr;
   (void)ask(REQUEST_STATUS, kSession);
   run(10500);
   EXPECT_TRUE(has(command("commission start", 100), "nobody would watch"));

@@ -182,7 +182,8 @@ TEST_F(Console, Commissioning) {
   EXPECT_TRUE(has(command("commission start free"), "not ready"));
   inside::state() = DRIVE_READY;
   EXPECT_TRUE(has(command("commission start free"), "the shaft will turn"));
-  EXPECT_TRUE(inside::request().commission);
+  ASSERT_NE(inside::request().begin, nullptr);
+  EXPECT_EQ(inside::request().begin->state, DRIVE_COMMISSION);
 }
 
 TEST_F(Console, ACommissioningUnderWayIsToldWithItsPhase) {

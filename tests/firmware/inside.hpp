@@ -5,7 +5,9 @@
 #define STILLSPIN_TESTS_FIRMWARE_INSIDE_HPP
 
 extern "C" {
+#include "firmware/api/status.h"
 #include "firmware/mode/mode.h"
+#include "firmware/sources/sources.h"
 }
 
 namespace stillspin::test::inside {
@@ -21,7 +23,7 @@ inline auto& flags() { return drive.flags; }
 inline auto& heartbeat() { return drive.heartbeat; }
 int32_t& heat_sink_q8();  // board_derating_test.cpp
 inline auto& limits() { return drive.limits; }
-inline auto& loading() { return drive.loading; }
+inline auto& loading() { return feature_status.loading; }
 inline auto& model() { return drive.model; }
 inline auto& periods() { return drive.periods; }
 inline auto& position() { return drive.position; }
@@ -50,7 +52,7 @@ inline auto& windows() { return drive.samples.windows; }
 // Angle and speed.
 inline auto& avv() { return drive.position.avv; }
 inline auto& blend() { return drive.position.blend; }
-inline auto& deviation_q20() { return drive.position.deviation_q20; }
+inline auto& deviation_q20() { return source_deviation_q20; }
 inline auto& high_speed_estimate() { return drive.position.high; }
 inline auto& is_near() { return drive.position.is_near; }
 inline auto& low_speed_estimate() { return drive.position.low; }

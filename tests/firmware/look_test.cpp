@@ -125,7 +125,7 @@ class LookAsked : public Requests {
     run(10);
   }
   static void show(look_outcome_t outcome, int rpm) {
-    inside::request().look = false;
+    inside::request().begin = nullptr;
     drive_look_end(outcome, rpm * 65536);
   }
 };
@@ -138,7 +138,8 @@ TEST_F(LookAsked, TheConsoleWaitsForWhatItShows) {
   } cases[] = {{LOOK_TURNS, "turns", "300 rpm"}, {LOOK_STANDS, "stands", "300 rpm"}, {LOOK_UNCLEAR, "", "300 rpm"}};
   for (const auto& c : cases) {
     EXPECT_EQ(command("look", 300), "") << "the pulses are under way";
-    ASSERT_TRUE(inside::request().look);
+    ASSERT_NE(inside::request().begin, nullptr);
+    EXPECT_EQ(inside::request().begin->behind, DRIVE_READY);
     show(c.outcome, 300);
     text.clear();
     run(300);
@@ -158,10 +159,10 @@ TEST_F(LookAsked, OneThatWasBrokenOffHasNoSpeed) {
 
 TEST_F(LookAsked, IsRefusedWhereAStartIs) {
   EXPECT_NE(command("look twice"), "");
-  EXPECT_FALSE(inside::request().look) << "it has no arguments";
+  EXPECT_EQ(inside::request().begin, nullptr) << "it has no arguments";
   inside::state() = DRIVE_RUN;
   EXPECT_NE(command("look").find("busy"), std::string::npos);
-  EXPECT_FALSE(inside::request().look);
+  EXPECT_EQ(inside::request().begin, nullptr);
 }
 
 TEST_F(LookAsked, AMachineReadsTheSame) {

@@ -180,7 +180,7 @@ TEST_F(Requests, Commands) {
   EXPECT_FALSE(inside::request().start) << "a start that was not carried out yet must not outlive the stop";
   EXPECT_EQ(give(COMMAND_COMMISSION).status(), OK);
   EXPECT_EQ(give(COMMAND_COAST).status(), OK);
-  EXPECT_FALSE(inside::request().commission);
+  EXPECT_EQ(inside::request().begin, nullptr);
   EXPECT_EQ(give(COMMAND_RESET).status(), STATE);
   inside::state() = DRIVE_FAULT;
   inside::fault() = FAULT_STOP;

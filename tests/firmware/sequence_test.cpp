@@ -84,7 +84,7 @@ TEST_F(States, RequestsThatAStateHasNoUseForAreForgotten) {
   drive_command_commission();
   periods(3);
   EXPECT_EQ(inside::state(), DRIVE_RUN);
-  EXPECT_FALSE(inside::request().start || inside::request().reset || inside::request().commission ||
+  EXPECT_FALSE(inside::request().start || inside::request().reset || inside::request().begin != nullptr ||
                inside::request().stop);
   drive_command_stop();
   periods(30);

@@ -15,6 +15,7 @@
 #include "firmware/mode/states.h"
 #include "firmware/scope/scope.h"
 #include "firmware/sources/flux/flux.h"
+#include "firmware/sources/sources.h"
 #include "firmware/start/flying/look.h"
 #include "firmware/store/store.h"
 #include "hal/hal_irq.h"
@@ -25,6 +26,7 @@ drive_t drive;
 flux_observer_t flux_observer;
 board_t board;
 uint16_t known_beside;
+int32_t source_deviation_q20;
 void (*drive_onlooker)(void);
 
 static void any_fault(void) {
@@ -46,7 +48,7 @@ void any_moment(void) {
   drive.limits = any_i32;
   drive.time_ms = any_u32;
   drive.heartbeat = any_u16;
-  drive.loading = any_bool();
+  feature_status.loading = any_bool();
   feature_status.store_work = any_up_to(3);
   drive.found.phase = any_up_to(15);
   drive.found.sigma_q8 = any_i32;
@@ -60,7 +62,7 @@ void any_moment(void) {
   drive.position.low.angle_bam = any_u32;
   drive.position.high.angle_bam = any_u32;
   drive.position.blend.share_q15 = any_i32;
-  drive.position.deviation_q20 = any_i32;
+  source_deviation_q20 = any_i32;
   flux_observer.load_angle_bam = any_i32;
   flux_observer.machine.psi_q16 = any_i32;
   board.heat_sink_q8 = any_i32;

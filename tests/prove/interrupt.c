@@ -171,8 +171,9 @@ static void one_period(void) {
   drive.request.stop = any_bool();
   drive.request.coast = any_bool();
   drive.request.reset = any_bool();
-  drive.request.commission = any_bool();
-  drive.loading = any_bool();
+  static const state_request_t commission = {DRIVE_COMMISSION, DRIVE_READY}, look = {DRIVE_START, DRIVE_READY};
+  drive.request.begin = any_bool() ? NULL : any_bool() ? &commission : &look;
+  feature_status.loading = any_bool();
   drive.request.speed = any_bool();
   drive.request.speed_rpm_q16 = any_i32;
   for (uint16_t k = 0; k < 3u; k++) {

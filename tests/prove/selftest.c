@@ -42,7 +42,7 @@ void prove_selftest(void) {
   while (any_bool()) {
     octet_writer_t line = octet_writer(block, 200);
     if (any_bool()) any_parameters();
-    drive.loading = any_bool();
+    feature_status.loading = any_bool();
     selftest_count(any_u32);
     (void)selftest_service();
     put_selftest(&line);

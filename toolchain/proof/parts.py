@@ -82,7 +82,7 @@ FRAMES = (
 )
 LOOKS = (
     "made/signal_looks.c",
-    *(f"firmware/{folder}/signals.c" for folder in ("board", "sources/flux", "start/flying")),
+    *(f"firmware/{folder}/signals.c" for folder in ("board", "sources/flux", "sources/observer", "start/flying")),
 )
 TEXTS = (
     *(

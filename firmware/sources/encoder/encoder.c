@@ -14,7 +14,10 @@
 
 encoder_t encoder;
 
-void encoder_reset(void) { clear(&encoder, sizeof encoder); }
+void encoder_reset(void) {
+  clear(&encoder, sizeof encoder);
+  source_deviation_q20 = 0;
+}
 
 static void take(void) {
   encoder.trim_bam = (uint32_t)q_mul64(parameters.encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
@@ -74,7 +77,7 @@ static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
   d->position.low = out;
   // Behind the observer: turning the frame is no motion of the shaft.
   out.angle_bam += encoder.trim_bam;
-  (void)zvv_deviation_q20(in, out.angle_bam, out.speed_bpp, &d->position.deviation_q20);
+  (void)zvv_deviation_q20(in, out.angle_bam, out.speed_bpp, &source_deviation_q20);
   return out;
 }
 

@@ -4,6 +4,8 @@
 
 #include "firmware/sources/sources.h"
 
+int32_t source_deviation_q20;
+
 #define ADAPT_ERROR_MAX_BAM 178956970L  // 15 degrees: beyond that the regression is not linear
 
 void source_step_avv(drive_t* d, const estimator_input_t* in) {

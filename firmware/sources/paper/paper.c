@@ -25,7 +25,10 @@ zvv_config_t paper_config;
 
 static zvv_config_t made;
 
-void paper_reset(void) { clear(&paper_zvv, sizeof paper_zvv); }
+void paper_reset(void) {
+  clear(&paper_zvv, sizeof paper_zvv);
+  source_deviation_q20 = 0;
+}
 
 static packed_text_t make(drive_config_t* c) {
   const parameters_t* const p = &parameters;
@@ -55,7 +58,7 @@ static bool is_by_turns(const drive_t* d) {
 
 static void step_zvv(drive_t* d, const estimator_input_t* in) {
   d->position.low = zvv_step(&paper_zvv, &paper_config, in, d->control.references.current_q20.d);
-  d->position.deviation_q20 = paper_zvv.deviation_q20;
+  source_deviation_q20 = paper_zvv.deviation_q20;
 }
 
 static void step_avv(drive_t* d, const estimator_input_t* in) {

@@ -9,16 +9,20 @@
 static look_outcome_t look;
 static int32_t look_rpm_q16;
 
+// A start that ends where the shaft is seen.
+static const state_request_t asked = {DRIVE_START, DRIVE_READY};
+
 void look_reset(void) { drive_look_end(LOOK_NONE, 0); }
 
 void drive_command_look(void) {
   look = LOOK_RUNNING;
-  drive.request.look = true;
+  drive.request.begin = &asked;
 }
 
 // The end of a look writes its outcome; who breaks it off does not know of it.
 look_outcome_t drive_look_outcome(void) {
-  const bool goes_on = drive.request.look || (drive.state == DRIVE_START && drive.flags.behind == DRIVE_READY);
+  const bool goes_on =
+      drive.request.begin == &asked || (drive.state == DRIVE_START && drive.flags.behind == DRIVE_READY);
   const look_outcome_t outcome = look;
   return (outcome == LOOK_RUNNING && !goes_on) ? LOOK_ENDED : outcome;
 }
