@@ -16,6 +16,7 @@
 #include "tests/firmware/slot_of.hpp"
 
 extern "C" {
+#include "firmware/api/status.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
 #include "firmware/store/store.h"

@@ -1,5 +1,5 @@
 // What opens the power stage while the drive runs, each cause alone, and what must not: the conditions that
-// supervision_test.cpp meets only together.
+// faults_test.cpp meets only together.
 
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/fault_history.h"
