@@ -94,7 +94,7 @@ def test_its_parameter_and_its_signal_are_in_the_tables(driven: list[Any]) -> No
     least, _, more, listed = driven[1]
     assert re.search(r"torque_share +5.00 % ", least)
     assert re.search(r"torque_share +60.00 % ", more)
-    assert re.search(r"torque_limit_least +60 % ", listed)
+    assert re.search(r"torque_limit_least +\*60 % ", listed)
     parameters, signals = (
         [row[at] for row in Lists().rows(name, macro)]
         for name, macro, at in (("parameter_list.h", "PARAMETER", 1), ("signal_list.h", "SIGNAL", 0))
