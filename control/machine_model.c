@@ -9,6 +9,7 @@
 #define INVERSE_STEPS 4u           // from twice or half of it
 #define SETTLE_CALLS 2u            // and with that of the trim, from any to any
 #define K0_END_Q20 1048576000L     // 1000 A per period
+#define TORQUE_END_Q24 503316480L  // 30 N m/A
 #define LEAST_SHARE_Q24 (-ONE_Q24 / 16 * 15)
 #define K_BITS 30u     // 64
 #define TILT_BITS 29u  // 32: K_dd counts twice
@@ -17,7 +18,7 @@
 static bool parameters_valid(const machine_parameters_t* p) {
   return q_in_range(p->rs_q24, 16777L, 838860800L) && q_in_range(p->ld_q30, 35792L, 536870912L) &&
          q_in_range(p->lq_q30, p->ld_q30, 536870912L) && q_in_range(p->flux_q28, 268435L, 268435456L) &&
-         q_in_range(p->inertia_q24, 168L, 16777216L) && q_in_range(p->pole_pairs, 1, 20) &&
+         q_in_range(p->inertia_q24, 168L, 16777216L) && q_in_range(p->pole_pairs, 1, 30) &&
          q_in_range(p->period_us, 20, 500);
 }
 
@@ -173,7 +174,8 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   m->accel_q12 = qc_mul_sat(q_div(per_torque_q22, p->inertia_q24, 14), 2 * p->pole_pairs, 1);
   m->torque_per_accel_q24 = q_div(1048576L, m->accel_q12, 24);
   // A constant at the end of its format is not the machine's.
-  return m->accel_q12 < INT32_MAX && unsaturated(m) && m->k_dq_q24 < RATIO_END_Q24 && m->k0_q20.q > -K0_END_Q20;
+  return m->accel_q12 < INT32_MAX && m->torque_q24 <= TORQUE_END_Q24 && unsaturated(m) && m->k_dq_q24 < RATIO_END_Q24 &&
+         m->k0_q20.q > -K0_END_Q20;
 }
 
 void machine_model_scale_inertia(machine_model_t* m, const machine_model_t* nominal, int32_t ratio_q24) {

@@ -23,7 +23,7 @@ typedef struct {
   int32_t lq_q30;       // q-axis inductance at no current, H, ld..0.5
   int32_t flux_q28;     // magnet flux linkage, V s, 0.001..1
   int32_t inertia_q24;  // kg m^2, 1e-5..1
-  int32_t pole_pairs;   // 1..20
+  int32_t pole_pairs;   // 1..30
   int32_t period_us;    // PWM period, microseconds, 20..500
 } machine_parameters_t;
 
@@ -69,7 +69,7 @@ typedef struct {
 
 /// Derives the constants, without saturation. Returns false, leaving the model unusable, when a parameter is outside
 /// its range or a constant outside its format: T/L above 0.6 A/V, lambda/T above 32000 V, Lq/Ld from 64, lambda/L from
-/// 1000 A, too light a rotor.
+/// 1000 A, 3/2 p lambda above 30 N m/A, too light a rotor.
 bool machine_model_init(machine_model_t* m, const machine_parameters_t* p);
 
 /// Replaces the map by one with saturation. False, with the old one kept, when it is not usable (machine_map.h).

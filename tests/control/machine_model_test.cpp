@@ -24,7 +24,7 @@ bool fits(const Motor& m) {
   const double y_max = m.period / m.ld;
   const double accel = m.pole_pairs * m.period * m.period / (kTurn * m.inertia) * std::ldexp(1.0, 32);
   return y_max < 0.59 && m.flux / m.period < 31900.0 && m.lq / m.ld < 63.0 && accel < 524000.0 &&
-         m.flux / m.lq < 990.0 && 4.0 * m.lq / m.period < 31900.0;
+         m.flux / m.lq < 990.0 && 1.5 * m.pole_pairs * m.flux < 29.9 && 4.0 * m.lq / m.period < 31900.0;
 }
 
 // Inductances and fluxes are rounded to the firmware's format before they are used; the formulas get the same numbers.
@@ -88,7 +88,7 @@ TEST(MachineModel, RandomMachines) {
     m.lq = std::min(m.ld * random.log_between(1.0, 20.0), 0.49);
     m.flux = random.log_between(0.00101, 0.99);
     m.inertia = random.log_between(1.01e-5, 0.99);
-    m.pole_pairs = 1 + random.below(20);
+    m.pole_pairs = 1 + random.below(30);
     m.period = (20 + random.below(481)) * 1e-6;
     if (!fits(m)) continue;
     used++;
@@ -113,7 +113,7 @@ TEST(MachineModel, EndsOfTheRanges) {
   check(m);
   m.inertia = 1.0;
   check(m);
-  m.pole_pairs = 20;
+  m.pole_pairs = 30;
   check(m);
 }
 
@@ -127,7 +127,7 @@ TEST(MachineModel, RejectsWhatIsOutsideItsRange) {
   } cases[] = {
       {&machine_parameters_t::rs_q24, 0.0009, 51.0, 24},      {&machine_parameters_t::ld_q30, 19e-6, 0.51, 30},
       {&machine_parameters_t::lq_q30, 4.8e-3, 0.51, 30},      {&machine_parameters_t::flux_q28, 0.0009, 1.01, 28},
-      {&machine_parameters_t::inertia_q24, 0.9e-5, 1.01, 24}, {&machine_parameters_t::pole_pairs, 0, 21, 0},
+      {&machine_parameters_t::inertia_q24, 0.9e-5, 1.01, 24}, {&machine_parameters_t::pole_pairs, 0, 31, 0},
       {&machine_parameters_t::period_us, 19, 501, 0},
   };
   for (const auto& c : cases) {
@@ -159,7 +159,10 @@ TEST(MachineModel, RejectsMachinesWhoseConstantsDoNotFit) {
   Motor loose;  // lambda / Lq = 3200 A
   loose.ld = loose.lq = 101e-6;
   loose.flux = 0.323;
-  for (const Motor& motor : {light, fast, strong, salient, loose}) {
+  Motor torquey;  // 3/2 p lambda = 30.15 N m/A
+  torquey.flux = 0.67;
+  torquey.pole_pairs = 30;
+  for (const Motor& motor : {light, fast, strong, salient, loose, torquey}) {
     const machine_parameters_t p = parameters_of(motor);
     EXPECT_FALSE(machine_model_init(&m, &p)) << motor.ld << ", " << motor.flux << ", " << motor.inertia;
   }
@@ -274,7 +277,7 @@ TEST(MachineModel, RangesEndWhereTheyAreSaidTo) {
                 {&machine_parameters_t::lq_q30, parameters_of(Motor{}).ld_q30, 536870912},
                 {&machine_parameters_t::flux_q28, 268435, 268435456},
                 {&machine_parameters_t::inertia_q24, 168, 16777216},
-                {&machine_parameters_t::pole_pairs, 1, 20},
+                {&machine_parameters_t::pole_pairs, 1, 30},
                 {&machine_parameters_t::period_us, 20, 500}};
   for (const auto& range : ranges) {
     for (const std::int32_t beyond : {range.low - 1, range.high + 1}) {
@@ -297,7 +300,7 @@ TEST(MachineModel, TheEndsOfTheRangesAreTaken) {
               {&machine_parameters_t::lq_q30, 10737418, 500}, {&machine_parameters_t::lq_q30, 536870912, 500},
               {&machine_parameters_t::flux_q28, 268435, 500}, {&machine_parameters_t::flux_q28, 268435456, 500},
               {&machine_parameters_t::inertia_q24, 168, 20},  {&machine_parameters_t::inertia_q24, 16777216, 500},
-              {&machine_parameters_t::pole_pairs, 1, 500},    {&machine_parameters_t::pole_pairs, 20, 500},
+              {&machine_parameters_t::pole_pairs, 1, 500},    {&machine_parameters_t::pole_pairs, 30, 500},
               {&machine_parameters_t::period_us, 20, 20},     {&machine_parameters_t::period_us, 500, 500}};
   for (const auto& one : ends) {
     machine_parameters_t p = {16777216, 10737418, 10737418, 2684355, 167772, 1, one.period_us};  // 10 mH, 0.01 Vs

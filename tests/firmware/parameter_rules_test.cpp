@@ -252,6 +252,12 @@ TEST_F(ParameterRules, AMachineThatIsRefusedIsNotLoaded) {
   EXPECT_EQ(inside::config().values.link_minimum, had);
 }
 
+TEST_F(ParameterRules, AMachineMayHaveAllPolePairsOfTheTable) {
+  parameters.speed_limit = raw(300.0, 8);
+  parameters.pole_pairs = 30;
+  keeps();
+}
+
 // With twice the sensors' full scale along d the reluctance adds 51 N m/A to a torque constant at most.
 TEST_F(ParameterRules, AReluctanceBeyondTheTorquesFormatsIsRefused) {
   parameters.inductance_d = raw(60.0, 20);

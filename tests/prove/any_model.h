@@ -29,10 +29,10 @@ static inline void any_nameplate(machine_model_t* m) {
   m->flux_q28 = any_from(268435L, 268435456L);
   m->emf_q16 = any_from(131072L, FLUX_END_Q16);
   m->torque_q24 = any_from(25165L, 503316480L);
-  m->reluctance_q24 = any_from(-251658240L, 0);
+  m->reluctance_q24 = any_from(-377487360L, 0);
   m->accel_q12 = any_from(1, INT32_MAX - 1);
   m->torque_per_accel_q24 = any_from(8192L, INT32_MAX);
-  m->pole_pairs = any_from(1, 20);
+  m->pole_pairs = any_from(1, 30);
   m->periods_per_second = any_from(2000, 50000L);
   m->period_q30 = any_from(21474L, 536871L);
   for (uint16_t k = 0; k < MACHINE_MAP_POINTS; k++) m->map.points[k] = any_point();

@@ -43,7 +43,7 @@ def _positive(unit: str) -> Range:
 
 
 QUESTIONS = (
-    _ask("pole_pairs", "pole pairs", "Pole pairs (half the number of poles)", "pole_pairs", Range(1, 20, whole=True)),
+    _ask("pole_pairs", "pole pairs", "Pole pairs (half the number of poles)", "pole_pairs", Range(1, 30, whole=True)),
     _ask(
         "resistance",
         "resistance",
