@@ -24,6 +24,7 @@
 #define STAIRCASE_LEVELS 14u
 #define MAP_LEVELS 4u
 #define MAP_GROUPS 4u
+#define SALIENT_LEAST 2u  // levels of the map: fewer may as well be a wrong order of the phases
 #define SPIN_STATIONS 3u
 #define SPIN_RAMPS 2u
 
@@ -35,12 +36,17 @@ typedef struct {
   int32_t link_q16;
 } staircase_level_t;
 
+/// One half of the levels, one above the other.
+typedef struct {
+  int32_t first_q20, step_q20;
+} staircase_half_t;
+
 typedef struct {
   staircase_level_t level[STAIRCASE_LEVELS];
   uint16_t index;
   uint16_t turn;  // period of those in which the sums take turns
   int32_t tick;
-  int32_t most_q20;
+  staircase_half_t half[2];
   dead_time_config_t one_volt;  // the devices, if their drop were that
 } staircase_t;
 
@@ -54,10 +60,16 @@ typedef struct {
 typedef struct {
   map_group_t group[MAP_LEVELS][MAP_GROUPS];
   uint16_t level;
-  uint16_t train;   // trains begun at this level
-  int32_t tick;     // in the train, or in the pause after it
-  int32_t segment;  // length of a segment, periods
+  uint16_t levels;   // with a saliency, or all of them
+  int32_t most_q20;  // current of the last level
+  uint16_t train;    // trains begun at this level
+  int32_t tick;      // in the train, or in the pause after it
+  int32_t segment;   // length of a segment, periods
+  int32_t blank;     // of it, in which the current settles
+  int32_t step_q20;  // A by which the current may change in a period
   bool pause;
+  bool judge;        // the background level owes whether the level has a saliency
+  bool lost;         // it has none
   int32_t plan[2];   // i_q reference: that of now, and the one before it
   int32_t speed_q8;  // predicted motion in this train: binary angle per period
   int32_t position_bam;

@@ -33,26 +33,27 @@
 #define PLACES 8u
 #define PLACE_BAM 536870912uL  // 45 degrees
 #define MOVE_PERIODS 300
-#define SLOPE_STEPS 12  // periods for the current limit
+#define SLOPE_STEPS 12  // periods for the current limit, or what half of the link drives
 
 static const int16_t signs[SEGMENTS] = {1, -1, -1, 1};
 
-static int32_t level_q20(uint16_t level) {
-  return drive.config.values.current_limit / (int32_t)MAP_LEVELS * ((int32_t)level + 1);
+int32_t map_level_q20(const map_t* m, uint16_t level) {
+  return m->most_q20 / (int32_t)MAP_LEVELS * ((int32_t)level + 1);
 }
 
 // Periods in which a reversal of the current settles.
-static int32_t blank(uint16_t level) {
-  return (2 * SLOPE_STEPS * ((int32_t)level + 1)) / (int32_t)MAP_LEVELS + SETTLE_PERIODS;
-}
+static int32_t blank(const map_t* m) { return 2 * map_level_q20(m, m->level) / m->step_q20 + SETTLE_PERIODS; }
 
 static void begin_train(drive_t* d) {
   map_t* const m = &commissioning.map;
-  const int32_t torque_q16 = qc_mul(machine_torque_constant_q24(&d->model, 0), level_q20(m->level), 28);
+  const int32_t torque_q16 = qc_mul(machine_torque_constant_q24(&d->model, 0), map_level_q20(m, m->level), 28);
   const int32_t accel_q8 = q_max(qc_mul_sat(torque_q16, d->model.accel_q12, 20), 1);
   const int32_t square = q_div(EXCURSION_BAM, accel_q8, 8);
   m->segment = q_clamp((int32_t)q_sqrt32((uint32_t)square), SEGMENT_MIN, SEGMENT_MAX);
-  m->segment = q_max(m->segment, blank(m->level) + 14);
+  const int32_t swing_q20 = qc_mul(d->samples.link_q16, d->model.yq_q30, 27);
+  m->step_q20 = q_max(q_min(drive.config.values.current_limit / SLOPE_STEPS, swing_q20), 1);
+  m->blank = blank(m);
+  m->segment = q_max(m->segment, m->blank + 14);
   m->pause = false;
   m->tick = 0;
   m->speed_q8 = 0;
@@ -80,18 +81,25 @@ static void add_period(const drive_t* d, map_t* m, uint16_t segment) {
 // The second of two equal segments need not settle.
 static bool usable(const map_t* m, uint16_t segment) {
   const int32_t inside = m->tick - (int32_t)segment * m->segment;
-  return segment == 2u || inside >= blank(m->level);
+  return segment == 2u || inside >= m->blank;
 }
 
 // The current follows the plan two periods later: the plan's slope goes to the voltage at once, its value to the
 // controller with that delay. So the integrator has nothing to do and the current does not overshoot.
 static void follow(drive_t* d, map_t* m, int32_t target_q20) {
-  const int32_t step = d->config.values.current_limit / SLOPE_STEPS;
   const int32_t last = m->plan[0];
   d->control.references.current_q20.q = m->plan[1];
   m->plan[1] = last;
-  m->plan[0] = q_limit(q_clamp(target_q20, last - step, last + step), d->config.values.current_limit);
+  m->plan[0] = q_limit(q_clamp(target_q20, last - m->step_q20, last + m->step_q20), d->config.values.current_limit);
   d->control.references.feed_forward_q16 = q_div(m->plan[0] - last, d->model.yq_q30, 26);
+}
+
+static bool level_complete(const map_t* m) {
+  if (m->train % (2u * PLACES) != 0u) return false;
+  for (uint16_t k = 0; k < MAP_GROUPS; k++) {
+    if (m->group[m->level][k].tensor.count < WANTED_PERIODS / ((int32_t)m->level + 1)) return m->train >= 600u;
+  }
+  return true;
 }
 
 static void run_train(drive_t* d, map_t* m) {
@@ -102,21 +110,14 @@ static void run_train(drive_t* d, map_t* m) {
     if (usable(m, segment)) add_period(d, m, segment);
     sign = ((m->train % 2u) != 0u) ? -signs[segment] : signs[segment];
   }
-  follow(d, m, sign * level_q20(m->level));
+  follow(d, m, sign * map_level_q20(m, m->level));
   m->tick = qc_add_sat(m->tick, 1);
-  if (m->tick < SEGMENTS * m->segment + blank(m->level)) return;
+  if (m->tick < SEGMENTS * m->segment + m->blank) return;
   m->pause = true;
+  m->judge = level_complete(m);
   m->tick = 0;
   commissioning.predicting = false;
   machine_model_follow(&d->model, 0);
-}
-
-static bool level_complete(const map_t* m) {
-  if (m->train % (2u * PLACES) != 0u) return false;
-  for (uint16_t k = 0; k < MAP_GROUPS; k++) {
-    if (m->group[m->level][k].tensor.count < WANTED_PERIODS / ((int32_t)m->level + 1)) return m->train >= 600u;
-  }
-  return true;
 }
 
 // Before every second train the shaft moves on by 45 degrees electrical: over eight places cogging averages out, and so
@@ -145,12 +146,34 @@ int32_t commissioning_map_done(const map_t* m) {
   return begin + q_min(periods, WANTED_PERIODS) * (ends[m->level + 1u] - begin) / WANTED_PERIODS;
 }
 
-static void begin(const drive_t* d, map_t* m) {
+static void begin_map(map_t* m, int32_t most_q20) {
+  m->most_q20 = most_q20;
+  m->levels = MAP_LEVELS;
   m->level = 0;
   m->train = 0;
   m->tick = 0;
+}
+
+// Beyond the saliency nothing shows the angle: no level is tried above one that has none. With too few below it the
+// map begins again with half of the currents, a quarter of the limit at the least.
+static void next_level(map_t* m) {
+  m->train = 0;
+  m->level++;
+  if (!m->lost) return;
+  if (m->level <= SALIENT_LEAST && m->most_q20 > drive.config.values.current_limit / 4) {
+    begin_map(m, m->most_q20 / 2);
+  } else {
+    m->levels = (uint16_t)(m->level - 1u);
+    m->level = MAP_LEVELS;
+  }
+}
+
+static void begin(const drive_t* d, map_t* m) {
+  begin_map(m, drive.config.values.current_limit);
   m->segment = 0;
   m->pause = true;
+  m->judge = false;
+  m->lost = false;
   m->plan[0] = 0;
   m->plan[1] = 0;
   commissioning.target_bam = d->position.selected.angle_bam;
@@ -176,11 +199,9 @@ bool commissioning_map(drive_t* d) {
     m->tick = qc_add_sat(m->tick, 1);
     return false;
   }
-  if (level_complete(m)) {
-    m->level++;
-    m->train = 0;
-  }
+  if (m->judge) return false;
+  if (level_complete(m)) next_level(m);
   if (m->level >= MAP_LEVELS) return true;
-  begin_train(d);
+  if (m->tick > length) begin_train(d);
   return false;
 }

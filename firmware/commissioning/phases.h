@@ -12,6 +12,7 @@ bool commissioning_align(drive_t* d);                     // commissioning/hold.
 bool commissioning_climb(drive_t* d);                     // commissioning/staircase.c
 bool commissioning_map(drive_t* d);                       // commissioning/map.c
 int32_t commissioning_map_done(const map_t* m);           // share of it in time, per mille
+int32_t map_level_q20(const map_t* m, uint16_t level);    // its current, A
 bool commissioning_spin(drive_t* d);                      // commissioning/spin.c
 void commissioning_hold(drive_t* d);                      // keeps the shaft at target_bam by i_q
 void commissioning_set_d(drive_t* d, int32_t level_q20);  // i_d reference, with a limited slope

@@ -1,6 +1,7 @@
 #include "firmware/commissioning/result.h"
 
 #include "firmware/commissioning/outcome.h"
+#include "firmware/commissioning/phases.h"
 #include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/commands.h"
@@ -18,7 +19,6 @@ enum {
 #define EDGE_CHANGE_MAX_Q16 65536L  // 1 us
 #define TURN_MAX_BAM 357913941L     // 30 degrees: beyond that next to no saliency is left
 #define SALIENCY_SHARE 8            // nor with less than an eighth of it
-#define SALIENT_LEAST 2u            // levels: fewer may as well be a wrong order of the phases
 #define CURRENT_SHARE 10            // a level's current is met within a tenth
 
 static commissioning_verdict_t worst(commissioning_verdict_t a, commissioning_verdict_t b) {
@@ -101,14 +101,10 @@ static commissioning_verdict_t judge_unsaturated(const map_values_t* v, int32_t 
   return worst(d, q);
 }
 
-static int32_t level_q20(uint16_t level) {
-  return parameters.current_limit / (int32_t)MAP_LEVELS * ((int32_t)level + 1);
-}
-
-static void judge_level(const map_values_t* v, const map_values_t* zero, uint16_t level,
+static void judge_level(const map_values_t* v, const map_values_t* zero, uint16_t level, int32_t level_q20,
                         commissioning_verdict_t unsaturated, commissioning_report_t* r) {
   const commissioning_verdict_t measured = v->valid ? VERDICT_USED : VERDICT_NOT_MEASURED;
-  const commissioning_verdict_t current = agree(level_q20(level), v->current_q20, CURRENT_SHARE);
+  const commissioning_verdict_t current = agree(level_q20, v->current_q20, CURRENT_SHARE);
   const bool singular = v->ldd_q20 <= 0 || v->lqq_q20 <= 0 || qc_abs_sat(v->turn_bam) > TURN_MAX_BAM;
   commissioning_verdict_t all = worst(measured, singular ? VERDICT_NOT_PHYSICAL : VERDICT_USED);
   all = worst(all, (current == VERDICT_USED) ? current : VERDICT_NOT_MEASURED);
@@ -130,15 +126,21 @@ static void keep_map_together(commissioning_report_t* r, uint16_t first, bool en
   offer(r, ID_saliency_current, ends ? last->value : 0, all);
 }
 
-static bool has_lost_saliency(const map_values_t* v, const map_values_t* zero) {
-  const int32_t least_q20 = qc_sub_sat(zero->lqq_q20, zero->ldd_q20) / SALIENCY_SHARE;
+static bool has_lost_saliency(const map_values_t* v, int32_t saliency_q20) {
+  const int32_t least_q20 = saliency_q20 / SALIENCY_SHARE;
   return v->valid && (qc_sub_sat(v->lqq_q20, v->ldd_q20) < least_q20 || qc_abs_sat(v->turn_bam) > TURN_MAX_BAM);
+}
+
+// Of the level that has just been measured; the nameplate's saliency has to do, for the pauses still add to the other.
+bool commissioning_level_is_lost(const commissioning_t* c) {
+  const map_values_t v = map_solve(c->map.group[c->map.level], &c->model);
+  return has_lost_saliency(&v, parameters.inductance_q - parameters.inductance_d);
 }
 
 // The map's points up to the last level with saliency, between the measured ones on straight lines, as the flux takes
 // the inductances (machine_map.c). From the last one down: a point lies below the levels that it is made of.
-static void end_map(commissioning_result_t* map, uint16_t salient) {
-  conclude(map, level_q20((uint16_t)(salient - 1u)), VERDICT_USED);
+static void end_map(commissioning_result_t* map, uint16_t salient, int32_t current_q20) {
+  conclude(map, current_q20, VERDICT_USED);
   for (uint16_t point = MAP_LEVELS; point > 0u; point--) {
     const uint16_t place = (uint16_t)(point * salient);
     const int32_t share_q24 = (int32_t)(place % MAP_LEVELS) * (16777216L / (int32_t)MAP_LEVELS);
@@ -156,22 +158,25 @@ static void end_map(commissioning_result_t* map, uint16_t salient) {
 static void judge_map(const commissioning_t* c, const map_values_t* zero, commissioning_verdict_t unsaturated,
                       commissioning_report_t* r) {
   const uint16_t first = r->count;
+  const int32_t saliency_q20 = qc_sub_sat(zero->lqq_q20, zero->ldd_q20);
   offer(r, ID_map_current, parameters.current_limit, VERDICT_USED);
   uint16_t salient = 0;
   map_values_t below = *zero;
   for (uint16_t k = 0; k < MAP_LEVELS; k++) {
+    const int32_t level_q20 = map_level_q20(&c->map, k);
     const map_values_t measured = map_solve(c->map.group[k], &c->model);
     map_values_t v = measured;
-    map_refer(&v, &below, level_q20(k));
-    judge_level(&v, zero, k, unsaturated, r);
-    if (!has_lost_saliency(&v, zero)) salient = (uint16_t)(k + 1u);
+    map_refer(&v, &below, level_q20);
+    judge_level(&v, zero, k, level_q20, unsaturated, r);
+    if (k < c->map.levels && !has_lost_saliency(&v, saliency_q20)) salient = (uint16_t)(k + 1u);
     below = measured;
   }
-  const bool ends = salient >= SALIENT_LEAST && salient < MAP_LEVELS;
-  if (ends) end_map(&r->list[first], salient);
+  const bool early = salient < MAP_LEVELS || c->map.most_q20 < parameters.current_limit;
+  const bool ends = early && salient >= SALIENT_LEAST;
+  if (ends) end_map(&r->list[first], salient, map_level_q20(&c->map, (uint16_t)(salient - 1u)));
   int32_t ldq_q20[MAP_LEVELS];
   for (uint16_t k = 0; k < MAP_LEVELS; k++) ldq_q20[k] = r->list[first + 3u * (k + 1u)].value;
-  const bool smooth = map_smooth(ldq_q20, qc_sub_sat(zero->lqq_q20, zero->ldd_q20));
+  const bool smooth = map_smooth(ldq_q20, saliency_q20);
   for (uint16_t k = 0; k < MAP_LEVELS; k++) {
     conclude(&r->list[first + 3u * (k + 1u)], ldq_q20[k], smooth ? VERDICT_USED : VERDICT_SPREAD);
   }
@@ -191,7 +196,7 @@ void commissioning_solve_motion(commissioning_t* c) {
 
 // Flux over inertia, from how far the torque trains moved the shaft, is a second way to the inertia.
 static int32_t inertia_from_trains(const commissioning_t* c, int32_t inertia_q24) {
-  const map_values_t top = map_solve(c->map.group[MAP_LEVELS - 1u], &c->model);
+  const map_values_t top = map_solve(c->map.group[q_max(c->map.levels, 1) - 1], &c->model);
   const int32_t moved_q24 = q_max(qc_add_sat(16777216L, top.share_q24), 1);
   return q_div(inertia_q24, moved_q24, 24);
 }

@@ -108,6 +108,10 @@ static void settle(drive_t* d) {
     commissioning_solve_motion(c);
     c->solve_motion = false;
   }
+  if (c->map.judge) {
+    c->map.lost = commissioning_level_is_lost(c);
+    c->map.judge = false;
+  }
   if (!c->evaluate) return;
   commissioning_judge(c, &report);
   c->outcome = commissioning_use(&report);
@@ -116,7 +120,7 @@ static void settle(drive_t* d) {
 }
 
 void commissioning_service(drive_t* d) {
-  const bool wanted = has_failed(d) || commissioning.solve_motion || commissioning.evaluate;
+  const bool wanted = has_failed(d) || commissioning.solve_motion || commissioning.map.judge || commissioning.evaluate;
   if (!wanted || !hal_replay_has_work(REPLAY_EVALUATED)) return;
   hal_replay_work_begin(REPLAY_EVALUATED);
   settle(d);

@@ -4,6 +4,8 @@
 #include "estimators/fit.h"
 #include "hal/qmath/qcall.h"
 
+#define EIGHTH_BAM 536870912L
+#define FACTOR_LEAST_Q20 1258291L  // 1.2 of 4/3
 #define SQRT3_Q28 464943848L
 #define AXIS_PARTS 512  // of the saliency: mutual inductance that turns the axis by 0.1 degrees
 // 2^32 T / 2 pi with T = 100 us: binary angle per period of 1 rad/s.
@@ -46,6 +48,14 @@ static bool window_columns(const staircase_t* s, const machine_model_t* m, int32
   return true;
 }
 
+// A shaft that stays where it was taken to has no phase near zero, and a volt of drop is 4/3 V along d at every level.
+static bool stayed(const columns_t* c) {
+  for (uint16_t k = 0; k < STAIRCASE_LEVELS; k++) {
+    if (qc_abs_sat(c->factor[k]) < FACTOR_LEAST_Q20) return false;
+  }
+  return true;
+}
+
 staircase_values_t staircase_solve(const staircase_t* s, const machine_model_t* m) {
   staircase_values_t v = {false, 0, 0, 0, 0, 0, 0};
   columns_t c;
@@ -53,7 +63,8 @@ staircase_values_t staircase_solve(const staircase_t* s, const machine_model_t* 
   if (!command_columns(s, &c)) return v;
   if (!fit_plane(c.current, c.factor, c.voltage, STAIRCASE_LEVELS, &plane)) return v;
   v.resistance_q24 = plane.slope_q24;
-  v.command_rms_q16 = plane.rms / 16;
+  const bool held = stayed(&c);
+  v.command_rms_q16 = held ? plane.rms / 16 : INT32_MAX;
   if (!window_columns(s, m, v.resistance_q24, &c)) return v;
   const int64_t square = fit_dot(c.factor, c.factor, STAIRCASE_LEVELS);
   v.drop_error_q16 = fit_ratio(fit_dot(c.factor, c.voltage, STAIRCASE_LEVELS), square, 16);
@@ -65,7 +76,7 @@ staircase_values_t staircase_solve(const staircase_t* s, const machine_model_t* 
     rest += (int64_t)left * left;
     link += s->level[k].link_q16;
   }
-  v.window_rms_q16 = (int32_t)q_sqrt64((uint64_t)rest / STAIRCASE_LEVELS);
+  v.window_rms_q16 = held ? (int32_t)q_sqrt64((uint64_t)rest / STAIRCASE_LEVELS) : INT32_MAX;
   v.link_q16 = fit_ratio(link, STAIRCASE_LEVELS, 0);
   v.valid = true;
   return v;
@@ -157,7 +168,7 @@ map_values_t map_solve(const map_group_t group[MAP_GROUPS], const machine_model_
   const int32_t predicted = qc_sub_sat(position[0], position[2]) / 2 + qc_sub_sat(position[1], position[3]) / 2;
   v.share_q24 = fit_ratio(moved, predicted, 24);
   v.turn_bam = (axis[0] - axis[1]) / 4 + (axis[2] - axis[3]) / 4;
-  invert(&v, mean, half);
+  invert(&v, mean, (qc_abs_sat(axis[0]) > EIGHTH_BAM) ? -half : half);  // Lqq may have sunk below Ldd
   v.valid = true;
   return v;
 }

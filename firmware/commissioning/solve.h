@@ -11,7 +11,7 @@ typedef struct {
   int32_t resistance_q24;                   // winding and devices, ohm
   int32_t drop_error_q16;                   // true device drop less the assumed one, V
   int32_t edge_error_q16;                   // voltage lost at the edges beyond what the assumed delays explain, V
-  int32_t command_rms_q16, window_rms_q16;  // what the two fits leave over, V
+  int32_t command_rms_q16, window_rms_q16;  // what the two fits leave over, V; beyond all bounds when the shaft moved
   int32_t link_q16;                         // mean DC link, V
 } staircase_values_t;
 

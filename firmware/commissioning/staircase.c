@@ -11,10 +11,13 @@
 // its vector. The link samples at the ends of the two windows tell by how much.
 //
 // Levels: seven from 40 % to the whole current limit, but from where the ripple changes no current's sign on (a phase
-// has at least half of i_d, so that is twice the ripple and a fifth to spare). First with i_d > 0, then with i_d < 0;
-// the latter not beyond the field-weakening limit, for the magnets' sake, and neither beyond what a level may last
-// without an overload: with the machine cool, a quarter of what the overload's time constant bears. Resistance of
-// winding and of devices cannot be told apart this way: the devices' is kept as it was given.
+// has at least half of i_d, so that is twice the ripple and a fifth to spare). First with i_d > 0, not beyond half of
+// where the reluctance takes all of the magnet's torque, lambda/(Lq - Ld), for i_q has to hold the shaft; then with
+// i_d < 0, not beyond the field-weakening limit, for the magnets' sake (a rotor that is not held turns: there are none
+// to weaken); and neither beyond what a level may last without an overload: with the machine cool, a quarter of what
+// the overload's time constant bears. A sign that the ripple leaves no room takes the levels of the other: one side has
+// the drop in another place than the resistance, too. Resistance of winding and of devices cannot be told apart this
+// way: the devices' is kept as it was given.
 
 #include "firmware/base/clear.h"
 #include "firmware/board/functions.h"
@@ -44,14 +47,48 @@ static int32_t bearable_q20(void) {
   return q_min(drive.config.values.current_limit, qc_mul_sat(lasting_q20, q_max(share_q8, 256), 8));
 }
 
-static int32_t level_q20(const drive_t* d, uint16_t index) {
-  const int32_t limit = commissioning.staircase.most_q20;
-  const bool weakening = index >= SIDE;
-  const int32_t most = weakening ? q_clamp(d->config.values.weakening_limit, limit / 2, limit) : limit;
+// Half of the current along d whose reluctance leaves the magnet no torque.
+static int32_t held_q20(void) {
+  const machine_model_t* const m = &commissioning.model;
+  return q_div(m->flux_q28, q_max(m->lq_q30 - m->ld_q30, 1), 21);
+}
+
+// i_d < 0 pushes the rotor away from where it points, by torque(i_d, |i_d|) for each radian, and i_q can only bring it
+// back as fast as AVV sees it go: as far as that grows by no more than 0.8 of AVV's bandwidth.
+static int32_t pushed_q20(const drive_t* d, int32_t most) {
+  const int32_t b_q30 = d->config.avv.bandwidth_long_q30;
+  const int32_t end_q8 = qc_mul(b_q30, b_q30, 30) * 104;  // 0.64 2^10 / 2 pi
+  for (;;) {
+    const dq_t push_q20 = {-most, most};
+    const int32_t torque_q16 = machine_torque_q16(&commissioning.model, push_q20);
+    if (qc_mul_sat(torque_q16, commissioning.model.accel_q12, 20) <= end_q8) return most;
+    most -= most / 8;
+  }
+}
+
+// Where there is room for a line. sign: -1 or 1.
+static uint16_t place_half(const drive_t* d, staircase_half_t* half, int32_t sign, int32_t most) {
   const int32_t least = q_max(most / 10 * 4, ripple_q20(d) / 10 * 24);
-  if (least > most / 4 * 3) return 0;  // no room for a line: nothing will be found
-  const int32_t step = (most - least) / (int32_t)(SIDE - 1u);
-  return (weakening ? -1 : 1) * (least + step * (int32_t)(index % SIDE));
+  if (least > most / 4 * 3) return 0;
+  half->first_q20 = sign * least;
+  half->step_q20 = sign * ((most - least) / (int32_t)(SIDE - 1u));
+  return 1;
+}
+
+// With no room on either side there are no levels, and nothing will be found.
+static void place_levels(const drive_t* d, staircase_half_t half[2]) {
+  const bool held = !commissioning.uniform;
+  const int32_t limit = bearable_q20();
+  const int32_t weakening = q_clamp(d->config.values.weakening_limit, limit / 2, limit);
+  clear(half, 2u * sizeof *half);
+  const uint16_t above = place_half(d, &half[0], 1, held ? q_min(limit, held_q20()) : limit);
+  const uint16_t below = place_half(d, &half[1], -1, held ? pushed_q20(d, weakening) : limit);
+  half[above] = half[below];  // of one with room and one without
+}
+
+static int32_t level_q20(const staircase_t* s) {
+  const staircase_half_t* const h = &s->half[s->index / SIDE];
+  return h->first_q20 + h->step_q20 * (int32_t)(s->index % SIDE);
 }
 
 // What one volt of drop in every phase gives along the d-axis, Q20.
@@ -114,7 +151,7 @@ bool commissioning_climb(drive_t* d) {
     s->index = 0;
     s->turn = 0;
     s->tick = 0;
-    s->most_q20 = bearable_q20();
+    place_levels(d, s->half);
     s->one_volt = d->config.dead_time;
     s->one_volt.drop_q16 = 65536L;
     dead_time_design(&s->one_volt);
@@ -133,7 +170,7 @@ bool commissioning_climb(drive_t* d) {
     commissioning_set_d(d, 0);
     return false;
   }
-  commissioning_set_d(d, level_q20(d, s->index));
+  commissioning_set_d(d, level_q20(s));
   staircase_level_t* const l = &s->level[s->index];
   if (s->tick == 0) clear(l, sizeof *l);
   s->tick = qc_add_sat(s->tick, 1);

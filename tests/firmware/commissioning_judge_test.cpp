@@ -34,6 +34,8 @@ class CommissioningJudge : public Drive {
     c.model = m;
     c.staircase = climbed(m, 0.387, 0.08, -0.15);
     unsaturated(kUnsaturated);
+    c.map.most_q20 = parameters.current_limit;
+    c.map.levels = MAP_LEVELS;
     for (int level = 1; level <= 4; ++level) measured(level, saturated(level), 3.5 * level);
     c.spin = spun(0.1552, 0.00546, 0.003, 0.387);
   }
@@ -156,6 +158,16 @@ TEST_F(CommissioningJudge, ALevelOffTheLineSpoilsWhatItBelongsTo) {
   EXPECT_EQ(verdict("turn_on_delay"), VERDICT_SPREAD) << "which rests on it";
 }
 
+// A line is a line although the shaft lay where a phase was without current.
+TEST_F(CommissioningJudge, AShaftThatMovedGivesNoStaircase) {
+  for (const auto& [factor, verdict_then] : {std::pair{1.25, VERDICT_USED}, {1.15, VERDICT_SPREAD}}) {
+    SetUp();
+    c.staircase.level[3].factor = 4200LL * raw(factor, 20);
+    EXPECT_EQ(verdict("stator_resistance"), verdict_then) << factor;
+    EXPECT_EQ(verdict("device_drop"), verdict_then) << factor;
+  }
+}
+
 TEST_F(CommissioningJudge, DropsAndEdgesAreNearTheNameplates) {
   for (const auto& [volts, good] : {std::pair{1.4, true}, {1.6, false}}) {
     c.staircase = climbed(c.model, 0.387, volts, -0.15);
@@ -243,6 +255,39 @@ TEST_F(CommissioningJudge, ASaliencyEndsOnlyAboveTwoLevelsThatHaveIt) {
   for (int level = 1; level <= 4; ++level) measured(level, saturated(level), 3.5 * level);
   for (map_group_t& g : c.map.group[3]) tensor_reset(&g.tensor);
   EXPECT_EQ(verdict("lqq_4"), VERDICT_NOT_MEASURED) << "which says nothing of the saliency";
+}
+
+// Also where the levels above were not tried, or the currents were halved for two levels to have a saliency.
+TEST_F(CommissioningJudge, AMapIsUsedAsFarAsItWasMeasured) {
+  for (const bool halved : {false, true}) {
+    SetUp();
+    c.map.levels = halved ? MAP_LEVELS : 2;
+    if (halved) c.map.most_q20 = parameters.current_limit / 2;
+    for (int level = 1; level <= 4; ++level) measured(level, saturated(level), (halved ? 1.75 : 3.5) * level);
+    for (int level = 2; level < 4 && !halved; ++level) {
+      for (map_group_t& g : c.map.group[level]) tensor_reset(&g.tensor);
+    }
+    commissioning_report_t report;
+    commissioning_judge(&c, &report);
+    ASSERT_EQ(commissioning_use(&report), COMMISSIONING_DONE) << halved;
+    EXPECT_NEAR(real(parameters.map_current, 20), 7.0, 1e-3);
+    EXPECT_NEAR(real(parameters.saliency_current, 20), 7.0, 1e-3);
+    const double last = saturated(halved ? 4 : 2).qq;
+    EXPECT_NEAR(real(parameters.lqq_4, 16), 100.0 * last / kUnsaturated.qq, 0.1);
+  }
+}
+
+// A level is judged as soon as it is complete, by the nameplate's saliency. An Lqq below Ldd shows in the direction.
+TEST_F(CommissioningJudge, ALevelHasLostItsSaliencyByAmountTurnOrSign) {
+  c.map.level = 1;
+  const auto lost = [this](const Inductances& l) {
+    measured(2, l, 7.0);
+    return commissioning_level_is_lost(&c);
+  };
+  EXPECT_FALSE(lost(saturated(2)));
+  EXPECT_TRUE(lost({4.655e-3, 4.9e-3, 0.0}));
+  EXPECT_TRUE(lost({5.0e-3, 6.0e-3, 1.0e-3}));
+  EXPECT_TRUE(lost({4.655e-3, 3.6e-3, 0.0}));
 }
 
 // What is shortened rests on all of its levels.

@@ -33,6 +33,7 @@ TEST_F(Phases, TheMapsTrainsPutTheShaftBack) {
     inside::current_dq_q20() = {0, inside::reference_dq_q20().q};
     windows({0.0, real(inside::reference_dq_q20().q, 20)}, 0.0, 0.0);
     ASSERT_FALSE(step(commissioning_map));
+    commissioning.map.judge = false;  // the background level has seen a saliency
     if (paused) {
       ++pauses.back();
       EXPECT_EQ(commissioning.predicting, !m.pause);
@@ -96,6 +97,7 @@ TEST_F(Phases, TheMapSumsItsGroups) {
   int trains[4] = {}, segments[4] = {};
   for (int n = 0; !step(commissioning_map); ++n) {
     ASSERT_LT(n, 2000000);
+    commissioning.map.judge = false;
     inside::selected().angle_bam = commissioning.target_bam;
     if (m.level < 4) trains[m.level] = m.train, segments[m.level] = m.segment;
     inside::current_dq_q20() = {0, inside::reference_dq_q20().q};

@@ -26,10 +26,18 @@ class CommissioningStairs : public Drive {
     make_ready();
     inside::state() = DRIVE_COMMISSION;
     commissioning.model = nameplate();
-    commissioning.tick = 1;
-    commissioning.staircase.most_q20 = parameters.current_limit;
+    begin();
   }
   static staircase_t& stairs() { return commissioning.staircase; }
+  static void begin() {
+    commissioning.tick = 0;
+    (void)commissioning_climb(&drive);
+    commissioning.tick = 1;
+  }
+  static double level(int index) {
+    const staircase_half_t& h = stairs().half[index / 7];
+    return real(h.first_q20 + h.step_q20 * (index % 7), 20);
+  }
 };
 
 TEST_F(CommissioningStairs, TheFactorIsThatOfOneVolt) {
@@ -39,9 +47,7 @@ TEST_F(CommissioningStairs, TheFactorIsThatOfOneVolt) {
     dead_time_design(&inside::config().dead_time);
     inside::current_dq_q20() = {raw(10.0, 20), 0};
     inside::selected().angle_bam = bam(sixths * kPi / 3.0);
-    commissioning.tick = 0;
-    (void)commissioning_climb(&drive);
-    commissioning.tick = 1;
+    begin();
     stairs().tick = 600;
     (void)commissioning_climb(&drive);
     ASSERT_EQ(stairs().level[0].periods, 1);
@@ -54,6 +60,7 @@ TEST_F(CommissioningStairs, WithoutRoomForALineNoCurrentIsSent) {
   for (const bool room : {true, false}) {
     SetUp();
     if (!room) commissioning.model.yd_q30 *= 8;  // 0.6 mH: a ripple of 8 A and more
+    begin();
     for (int n = 0; n < 200; ++n) (void)commissioning_climb(&drive);
     EXPECT_NEAR(real(inside::reference_dq_q20().d, 20), room ? 5.6 : 0.0, room ? 1.5 : 0.0);
   }
@@ -94,17 +101,17 @@ TEST_F(CommissioningStairs, ItWaitsAtRestForTheWholeLimit) {
 TEST_F(CommissioningStairs, ALevelIsNoOverload) {
   parameters.rated_current = raw(4.0, 20);
   use_parameters();
+  commissioning.model.yd_q30 /= 4;  // with next to no ripple
   for (const auto& [seconds, most] : {std::pair{60.0, 14.0}, {10.0, 4.0 * std::sqrt(10.0 / 3.6)}, {1.0, 4.0}}) {
     parameters.overload_time = static_cast<std::int32_t>(1000.0 * seconds);
     use_parameters();
-    commissioning.tick = 0;
-    (void)commissioning_climb(&drive);
-    EXPECT_NEAR(real(stairs().most_q20, 20), most, 0.01 * most) << seconds;
+    begin();
+    EXPECT_NEAR(level(6), most, 0.01 * most) << seconds;
   }
   parameters.overload_current = 0;
   use_parameters();
-  (void)commissioning_climb(&drive);
-  EXPECT_EQ(stairs().most_q20, parameters.current_limit);
+  begin();
+  EXPECT_NEAR(level(6), 14.0, 1e-3);
 }
 
 // At rest the pairs wait for the period that makes the torque constant.
@@ -145,6 +152,61 @@ TEST_F(CommissioningStairs, TheMapSumsPairsOnly) {
   }
 }
 
+// No level above one without saliency, and half of the currents where fewer than two have it: twice at most. Until the
+// background level has judged, the shaft is held.
+TEST_F(CommissioningStairs, TheMapGoesNoFurtherThanTheSaliency) {
+  map_t& m = commissioning.map;
+  commissioning.tick = 0;
+  (void)commissioning_map(&drive);
+  commissioning.tick = 1;
+  const auto complete = [&m](bool lost) {
+    m.train = 16;
+    m.tick = 701;
+    m.lost = lost;
+    for (map_group_t& g : m.group[m.level]) g.tensor.count = 8000;
+    m.judge = true;
+    EXPECT_FALSE(commissioning_map(&drive));
+    EXPECT_EQ(m.train, 16) << "which waits";
+    m.judge = false;
+    const bool ended = commissioning_map(&drive);
+    EXPECT_NE(m.pause, !ended && m.tick == 0 && m.train > 0);
+    m.pause = true;
+    return ended;
+  };
+  EXPECT_FALSE(complete(false));
+  EXPECT_FALSE(complete(true));
+  EXPECT_EQ(m.most_q20, parameters.current_limit / 2);
+  EXPECT_EQ(m.level, 0);
+  EXPECT_EQ(m.train, 0);
+  EXPECT_EQ(m.tick, 0) << "in the pause that empties the sums";
+  EXPECT_FALSE(complete(true));
+  EXPECT_EQ(m.most_q20, parameters.current_limit / 4);
+  EXPECT_FALSE(complete(false));
+  EXPECT_FALSE(complete(false));
+  EXPECT_TRUE(complete(true));
+  EXPECT_EQ(m.levels, 2);
+  EXPECT_EQ(m.most_q20, parameters.current_limit / 4);
+}
+
+// The plan of the current is no steeper than half of the link drives, and a reversal has the time that this takes.
+TEST_F(CommissioningStairs, ATrainIsAsSlowAsTheLinkIsLow) {
+  map_t& m = commissioning.map;
+  const auto begun = [&m](double millihenry) {
+    commissioning.tick = 0;
+    (void)commissioning_map(&drive);
+    commissioning.tick = 1;
+    inside::model().yq_q30 = raw(0.1 / millihenry, 30);
+    m.tick = 701;
+    (void)commissioning_map(&drive);
+    return real(m.step_q20, 20);
+  };
+  const double link = real(inside::link_q16(), 16);
+  EXPECT_NEAR(begun(7.8), 14.0 / 12.0, 1e-5);
+  EXPECT_EQ(m.blank, 26);
+  EXPECT_NEAR(begun(50.0), link / 2.0 * 0.1 / 50.0, 1e-3);
+  EXPECT_NEAR(m.blank, 20.0 + 2.0 * 3.5 / (link * 0.001), 1.0);
+}
+
 TEST_F(CommissioningStairs, ResultsAreThereWhenItHasEnded) {
   commissioning_t& c = commissioning;
   c.outcome = COMMISSIONING_RUNNING;
@@ -162,6 +224,55 @@ TEST_F(CommissioningStairs, ResultsAreThereWhenItHasEnded) {
   EXPECT_EQ(drive_commissioning_result(0).id, 0);
 }
 
+// Up to the limit and down to the weakening limit, seven each.
+TEST_F(CommissioningStairs, TheLevelsLieOnBothSides) {
+  for (const int k : {0, 3, 6}) {
+    EXPECT_NEAR(level(k), 14.0 * (0.4 + 0.1 * k), 1e-3) << k;
+    EXPECT_NEAR(level(7 + k), -12.0 * (0.4 + 0.1 * k), 1e-3) << k;
+  }
+}
+
+// With i_d > 0 the reluctance turns the torque's sign at lambda / (Lq - Ld): the levels end at half of that, and where
+// this leaves no room all of them are those of i_d < 0.
+TEST_F(CommissioningStairs, TheReluctanceKeepsTheLevelsWhereTheShaftIsHeld) {
+  const double flux = real(commissioning.model.flux_q28, 28);
+  for (const auto& [end, most] : {std::pair{40.0, 14.0}, {16.0, 8.0}, {6.0, -12.0}}) {
+    commissioning.model.lq_q30 = commissioning.model.ld_q30 + raw(flux / end, 30);
+    begin();
+    EXPECT_NEAR(level(6), most, 0.01) << end;
+    EXPECT_NEAR(level(13), -12.0, 0.01);
+  }
+}
+
+// What the ripple leaves no room with i_d < 0, for the weakening limit is lower, has it with i_d > 0.
+TEST_F(CommissioningStairs, ASideWithoutRoomTakesTheLevelsOfTheOther) {
+  inside::config().values.weakening_limit = raw(4.0, 20);
+  commissioning.model.yd_q30 *= 2;
+  begin();
+  EXPECT_GT(level(0), 7.0);
+  for (int k = 0; k < 7; ++k) EXPECT_EQ(level(7 + k), level(k));
+}
+
+// i_d < 0 ends where the rotor is pushed away faster than AVV's observer follows: A's light rotor at a tenth of it.
+TEST_F(CommissioningStairs, ARotorIsPushedNoFasterThanAvvFollows) {
+  commissioning.model.accel_q12 *= 10;
+  commissioning.model.yd_q30 /= 4;  // with next to no ripple
+  begin();
+  const double inertia = 0.00455 / 10.0, end = 0.64 * 200.0 * 200.0;
+  const auto pushed = [=](double i) { return 1.5 * 16.0 * (0.16 + 0.0029 * i) * i / inertia; };
+  EXPECT_LT(pushed(-level(13)), end);
+  EXPECT_GT(pushed(-level(13) * 8.0 / 7.0), end);
+  EXPECT_NEAR(level(6), 14.0, 1e-3);
+}
+
+// A rotor that is not held turns to where the current points: no level weakens its magnets.
+TEST_F(CommissioningStairs, ARotorThatTurnsHasTheWholeLimitOnBothSides) {
+  commissioning.uniform = true;
+  begin();
+  EXPECT_NEAR(level(6), 14.0, 1e-3);
+  EXPECT_NEAR(level(13), -14.0, 1e-3);
+}
+
 // A line is drawn over the upper quarter of the current at least.
 TEST_F(CommissioningStairs, ALineNeedsAQuarterOfTheCurrent) {
   for (const double share : {0.74, 0.76}) {
@@ -170,6 +281,7 @@ TEST_F(CommissioningStairs, ALineNeedsAQuarterOfTheCurrent) {
     const double pulse = inside::config().modulator.pulse_ticks / 1e4;
     const double link = real(inside::link_q16(), 16);
     commissioning.model.yd_q30 = raw(share * limit / 2.4 / (link * 2.0 / 3.0 * pulse), 30);
+    begin();
     for (int n = 0; n < 200; ++n) (void)commissioning_climb(&drive);
     EXPECT_NEAR(real(inside::reference_dq_q20().d, 20), share < 0.75 ? share * limit : 0.0, 0.01 * limit) << share;
   }

@@ -199,6 +199,25 @@ def test_a_machine_without_saliency_is_found_as_a_whole(tmp_path, motor):
     assert found["inertia"] == pytest.approx(told["inertia"] * (1.0 + error["inertia"]), rel=0.05)
 
 
+@pytest.mark.parametrize(("motor", "salient"), [("hsm1_300v", 0.0), ("motorcycle_72v", 225.0)])
+def test_a_machine_that_is_not_held_or_salient_at_its_limit_is_found_as_a_whole(tmp_path, motor, salient):
+    """One's magnets lose to the reluctance at 80 A of 312 A, the other's saliency ends at 289 A of 600 A."""
+    native = pytest.importorskip("stillspin._core", reason="the native module is not built")
+    chosen = profile.load(motor, core.plant_schema(native), core.parameters(native), motor)
+    out = tmp_path / "params.toml"
+    command = [sys.executable, "-m", "stillspin", "commission", "--motor", motor, "--profile", motor]
+    command += ["--set", "solver.method=rk4", "--out", str(out)]
+    result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
+    assert result.returncode == 0, result.stderr
+    assert "24 of 24 values found" in result.stdout
+    found = tomllib.loads(out.read_text(encoding="utf-8"))["parameters"]
+    told, error = chosen.parameters, chosen.plant["parameter_error"]
+    assert found["saliency_current"] == salient
+    for name in ("inductance_d", "inductance_q"):
+        assert found[name] == pytest.approx(told[name] * (1.0 + error[name]), rel=0.03)
+    assert found["device_drop"] == pytest.approx(told["device_drop"], rel=0.03)
+
+
 def test_a_saliency_that_ends_is_found_and_kept_while_the_shaft_is_slow(tmp_path):
     """A motor of the catalogue that has 18 % of it without current, and an eighth of that at 9.5 A of its 12 A."""
     native = pytest.importorskip("stillspin._core", reason="the native module is not built")

@@ -169,9 +169,9 @@ def test_the_vector_follows_from_the_nameplate():
     ("change", "title", "words"),
     [
         (
-            ("current_limit = 5.0", "current_limit = 22.0"),
+            ("current_limit = 5.0", "current_limit = 88.0"),
             "start at rest",
-            "an eighth of that is there up to 10.5 A; current_limit is 22 A: choose current_limit below 19.9 A",
+            "an eighth of that is there up to 10.5 A; current_limit is 88 A: choose current_limit below 79.5 A",
         ),
         (("magnet_flux = 0.11", "magnet_flux = 0.9"), "gates off", "link_maximum is 420 V"),
         (("magnet_flux = 0.11", "magnet_flux = 0.9"), "top speed", "speed_limit is 1500 rpm"),

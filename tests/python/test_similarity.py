@@ -117,6 +117,16 @@ def test_speeds_go_by_the_base_speed(native):
     assert followed(native, {"speed_limit": 900.0}, volts=1200.0)["spin_speed"] == 900.0
 
 
+def test_the_spin_is_no_faster_than_its_pulses_alternate(native):
+    """In size, not in name: what is said of the EMF's share of the link holds for each motor of the catalogue."""
+    for name in NAMES:
+        loaded = profile.load(name, core.plant_schema(native), core.parameters(native), name, checked=False)
+        told = loaded.parameters
+        emf = told["pole_pairs"] * told["magnet_flux"] * told.get("spin_speed", 600.0) * math.pi / 30.0
+        assert emf <= 0.15 * loaded.plant["link"]["source_voltage"], name
+    assert times(native, "spin_speed", magnet_flux=0.19) == pytest.approx(546.6 / 600.0, rel=1e-3)
+
+
 def test_a_ramp_is_a_share_of_what_the_machine_accelerates_with_but_not_faster_to_its_base_speed(
     native,
 ):

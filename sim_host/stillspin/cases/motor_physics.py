@@ -9,6 +9,7 @@ from stillspin.cases.motor_told import PERIOD, Described, Finding
 
 _TURN_LEAST = 12.0  # control interrupts per electrical turn
 _MAP_LEVELS, _SALIENT_LEAST = 4, 2  # currents at which the drive measures, and how many must have a saliency
+_MAP_LEAST = 0.25  # of current_limit: so far the drive halves them until as many have it
 
 
 def saliency(motor: Described) -> Finding:
@@ -29,11 +30,14 @@ def saliency(motor: Described) -> Finding:
     words += f", and an eighth of that is there up to {end:.3g} A; current_limit is {limit:.3g} A"
     if end >= limit:
         return Finding("start at rest", True, words)
-    levels = math.floor(_MAP_LEVELS * end / limit)
+    mapped = limit
+    while _MAP_LEVELS * end < _SALIENT_LEAST * mapped and mapped > _MAP_LEAST * limit:
+        mapped /= 2.0
+    levels = math.floor(_MAP_LEVELS * end / mapped)
     if levels < _SALIENT_LEAST:
-        most = _MAP_LEVELS / _SALIENT_LEAST * end
+        most = _MAP_LEVELS / _SALIENT_LEAST / _MAP_LEAST * end
         return Finding("start at rest", False, f"{words}: choose current_limit below {0.95 * most:.3g} A")
-    salient = levels / _MAP_LEVELS * limit
+    salient = min(levels / _MAP_LEVELS, 1.0) * mapped
     words += f": commissioned, the drive gives no more than saliency_current, {salient:.3g} A, while it is slow"
     return Finding("start at rest", True, words)
 

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 SALIENCY_LEAST = 1.0 / 15.0
 """(Lq - Ld)/(Lq + Ld) below which nothing shows the axis at rest, as commissioning has it: Lq an eighth above Ld."""
 _EMF_SHARE = 0.08  # of the link's voltage, at the vector's last speed
-_SPIN_SHARE = 0.145  # the same in the spin: the pulses alternate up to some 0.17
+_SPIN_SHARE = 0.145  # the same in the spin, at most: the pulses alternate up to some 0.17
 _FLUX_SHARE = 0.5  # L I of the vector, of the magnet's flux: beyond that it is hardly damped (control/if_start.h)
 _TORQUE_SHARE = 0.1  # of the vector's torque, for its own acceleration and that behind it
 _RISE_TIME = 0.6  # s, to the last speed
@@ -24,6 +24,11 @@ _RAMP_MOST = 3000.0  # rpm/s, the drive's default
 def share(inductance_d: float, inductance_q: float) -> float:
     """What tells the axis of a shaft at rest."""
     return (inductance_q - inductance_d) / (inductance_q + inductance_d)
+
+
+def spin_most(volts: float, flux: float, pairs: float) -> float:
+    """The speed of the commissioning's spin, rpm, up to which its pulses alternate, with or without saliency."""
+    return _rpm(_SPIN_SHARE * volts / flux / pairs)
 
 
 def following(told: Mapping[str, float], volts: float) -> dict[str, float]:

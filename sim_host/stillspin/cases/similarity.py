@@ -217,6 +217,12 @@ def _up_to_top_speed(asked: _Asked, name: str) -> float:
     return min(found, asked.told.get("speed_limit", found))
 
 
+def _spin(asked: _Asked, name: str) -> float:
+    """No faster than the pulses alternate: beyond, the mean of the currents is off by a share of the ripple."""
+    size = asked.size
+    return min(_up_to_top_speed(asked, name), open_loop.spin_most(size.volts, size.magnet_flux, size.pole_pairs))
+
+
 def _ramp(asked: _Asked, name: str) -> float:
     """A share of what the rated current accelerates with, and no faster to the base speed than the reference."""
     size = asked.size
@@ -271,7 +277,8 @@ def _synchronism_floor(asked: _Asked, name: str) -> float:
 _Law = Callable[[_Asked, str], float]
 RULES: dict[str, _Law] = {
     **dict.fromkeys(("blend_low", "blend_high", "flux_low", "flux_high"), _by_base_speed),
-    **dict.fromkeys(("if_speed", "spin_speed", "speed_input_full"), _up_to_top_speed),
+    **dict.fromkeys(("if_speed", "speed_input_full"), _up_to_top_speed),
+    "spin_speed": _spin,
     **dict.fromkeys(("start_current", "if_current"), _by_current),
     "polarity_current": _polarity_current,
     **dict.fromkeys(("observer_load_rate", "observer_load_quiet", "observer_load_step"), _load),
