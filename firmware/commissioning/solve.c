@@ -5,7 +5,7 @@
 #include "hal/qmath/qcall.h"
 
 #define EIGHTH_BAM 536870912L
-#define FACTOR_LEAST_Q20 1258291L  // 1.2 of 4/3
+#define FACTOR_LEAST_Q20 1048576L  // three quarters of that
 #define SQRT3_Q28 464943848L
 #define AXIS_PARTS 512  // of the saliency: mutual inductance that turns the axis by 0.1 degrees
 // 2^32 T / 2 pi with T = 100 us: binary angle per period of 1 rad/s.

@@ -160,7 +160,7 @@ TEST_F(CommissioningJudge, ALevelOffTheLineSpoilsWhatItBelongsTo) {
 
 // A line is a line although the shaft lay where a phase was without current.
 TEST_F(CommissioningJudge, AShaftThatMovedGivesNoStaircase) {
-  for (const auto& [factor, verdict_then] : {std::pair{1.25, VERDICT_USED}, {1.15, VERDICT_SPREAD}}) {
+  for (const auto& [factor, verdict_then] : {std::pair{1.05, VERDICT_USED}, {0.95, VERDICT_SPREAD}}) {
     SetUp();
     c.staircase.level[3].factor = 4200LL * raw(factor, 20);
     EXPECT_EQ(verdict("stator_resistance"), verdict_then) << factor;
