@@ -5,9 +5,9 @@
 // itself the right way round at some hundred rpm in the wrong direction. Once confirmed the watch is over. The check of
 // synchronism may be faster; then the sign seen so far tells which fault it is.
 //
-// Axis and back-EMF are looked at in slots of their own (schedule.c), once in each round of them; the axis a
-// few periods after the windows were regressed. Without an axis the back-EMF says nothing: what had been seen of it
-// until then stays.
+// Axis and back-EMF are looked at in slots (schedule.c), once in each round of them: the axis a few periods after the
+// windows were regressed; the back-EMF when they are regressed again, for that period has most room. Without an axis
+// the back-EMF says nothing: what had been seen of it until then stays.
 
 #include "firmware/drive/polarity_watch.h"
 
@@ -118,7 +118,7 @@ bool polarity_watch_step(drive_t* d) {
     follow_axis(d);
     return false;
   }
-  if (d->schedule.slot != SLOT_VOLTAGE || w->samples_invalid) return false;
+  if (d->schedule.slot != SLOT_REGRESSION || w->samples_invalid) return false;
   const emf_sign_result_t sign = look(d);
   forget_voltage(w);
   if (sign != EMF_SIGN_OPEN) w->open = false;

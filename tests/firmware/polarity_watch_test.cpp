@@ -86,7 +86,7 @@ TEST_F(PolarityWatch, GathersTheCommandsSinceTheLastLook) {
   EXPECT_EQ(polarity_watch.voltage_q12.q, 3 * raw(-5.0, 12));
   EXPECT_EQ(polarity_watch.periods, 3);
   polarity_watch.samples_invalid = false;
-  EXPECT_FALSE(step(SLOT_VOLTAGE));
+  EXPECT_FALSE(step(SLOT_REGRESSION));
   EXPECT_EQ(polarity_watch.voltage_q12.d | polarity_watch.voltage_q12.q | polarity_watch.periods, 0);
 }
 
@@ -180,7 +180,7 @@ TEST_F(PolarityWatch, AnAngleInUseThatIsOffIsNoReversedMagnet) {
       for (; n < 600 && polarity_watch.open; ++n) {
         inside::selected().angle_bam =
             polarity_watch.axis.angle_bam + static_cast<std::uint32_t>(speed) + bam(off < 0.0 ? off + kTurn : off);
-        reversed = step(n % 5 == 4 ? SLOT_VOLTAGE : kNone);
+        reversed = step(n % 5 == 4 ? SLOT_REGRESSION : kNone);
       }
       EXPECT_GE(n, 50) << "5 ms";
       EXPECT_FALSE(polarity_watch.open) << off;

@@ -310,7 +310,7 @@ TEST_F(Protection, AReversedBackEmfIsThePolarity) {
     int n = 0;
     for (; n < 400 && polarity_watch.open && inside::state() == DRIVE_RUN; ++n) {
       inside::schedule().slot =
-          n % 5 == 0 ? SLOT_VOLTAGE : SCHEDULE_SLOTS;  // the back-EMF's place in the turn, and none
+          n % 5 == 0 ? SLOT_REGRESSION : SCHEDULE_SLOTS;  // the back-EMF's place in the turn, and none
       inside::selected().angle_bam += static_cast<std::uint32_t>(speed);
       drive_protect(&drive);
     }
