@@ -53,19 +53,6 @@ static int32_t held_q20(void) {
   return q_div(m->flux_q28, q_max(m->lq_q30 - m->ld_q30, 1), 21);
 }
 
-// i_d < 0 pushes the rotor away from where it points, by torque(i_d, |i_d|) for each radian, and i_q can only bring it
-// back as fast as AVV sees it go: as far as that grows by no more than 0.8 of AVV's bandwidth.
-static int32_t pushed_q20(const drive_t* d, int32_t most) {
-  const int32_t b_q30 = d->config.avv.bandwidth_long_q30;
-  const int32_t end_q8 = qc_mul(b_q30, b_q30, 30) * 104;  // 0.64 2^10 / 2 pi
-  for (;;) {
-    const dq_t push_q20 = {-most, most};
-    const int32_t torque_q16 = machine_torque_q16(&commissioning.model, push_q20);
-    if (qc_mul_sat(torque_q16, commissioning.model.accel_q12, 20) <= end_q8) return most;
-    most -= most / 8;
-  }
-}
-
 // Where there is room for a line. sign: -1 or 1.
 static uint16_t place_half(const drive_t* d, staircase_half_t* half, int32_t sign, int32_t most) {
   const int32_t least = q_max(most / 10 * 4, ripple_q20(d) / 10 * 24);
@@ -82,7 +69,7 @@ static void place_levels(const drive_t* d, staircase_half_t half[2]) {
   const int32_t weakening = q_clamp(d->config.values.weakening_limit, limit / 2, limit);
   clear(half, 2u * sizeof *half);
   const uint16_t above = place_half(d, &half[0], 1, held ? q_min(limit, held_q20()) : limit);
-  const uint16_t below = place_half(d, &half[1], -1, held ? pushed_q20(d, weakening) : limit);
+  const uint16_t below = place_half(d, &half[1], -1, held ? weakening : limit);
   half[above] = half[below];  // of one with room and one without
 }
 

@@ -253,18 +253,6 @@ TEST_F(CommissioningStairs, ASideWithoutRoomTakesTheLevelsOfTheOther) {
   for (int k = 0; k < 7; ++k) EXPECT_EQ(level(7 + k), level(k));
 }
 
-// i_d < 0 ends where the rotor is pushed away faster than AVV's observer follows: A's light rotor at a tenth of it.
-TEST_F(CommissioningStairs, ARotorIsPushedNoFasterThanAvvFollows) {
-  commissioning.model.accel_q12 *= 10;
-  commissioning.model.yd_q30 /= 4;  // with next to no ripple
-  begin();
-  const double inertia = 0.00455 / 10.0, end = 0.64 * 200.0 * 200.0;
-  const auto pushed = [=](double i) { return 1.5 * 16.0 * (0.16 + 0.0029 * i) * i / inertia; };
-  EXPECT_LT(pushed(-level(13)), end);
-  EXPECT_GT(pushed(-level(13) * 8.0 / 7.0), end);
-  EXPECT_NEAR(level(6), 14.0, 1e-3);
-}
-
 // A rotor that is not held turns to where the current points: no level weakens its magnets.
 TEST_F(CommissioningStairs, ARotorThatTurnsHasTheWholeLimitOnBothSides) {
   commissioning.uniform = true;
