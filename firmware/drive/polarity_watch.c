@@ -6,8 +6,7 @@
 // synchronism may be faster; then the sign seen so far tells which fault it is.
 //
 // Axis and back-EMF are looked at in slots (schedule.c), once in each round of them: the axis a few periods after the
-// windows were regressed; the back-EMF when they are regressed again, for that period has most room. Without an axis
-// the back-EMF says nothing: what had been seen of it until then stays.
+// windows were regressed. Without an axis the back-EMF says nothing: what had been seen of it until then stays.
 
 #include "firmware/drive/polarity_watch.h"
 
@@ -17,6 +16,7 @@
 #define SUM_END_Q12 1073741824L       // of 64 periods of 4096 V
 #define VOLTS_END_Q12 16777216L       // 4096 V
 #define PERIODS_END 10000L            // a second: a round of the slots is much shorter
+#define WAITED_MAX 32                 // some three rounds of the slots
 #define BANDWIDTH_STEP_Q30 12884902L  // 120 rad/s * T
 
 polarity_watch_t polarity_watch;
@@ -113,12 +113,21 @@ bool polarity_watch_step(drive_t* d) {
   w->voltage_q12.q = q_limit(w->voltage_q12.q + q_shr(d->control.command_q16.q, 4), SUM_END_Q12);
   w->periods = q_min(w->periods + 1, PERIODS_END);
   w->axis_periods = q_min(w->axis_periods + 1, PERIODS_END);
-  if (d->schedule.slot == SLOT_REGRESSION) w->axis_then_bam = w->axis.angle_bam;
-  if (d->schedule.slot == SLOT_LOOK) {
+  const schedule_slot_t slot = d->schedule.slot;
+  if (slot == SLOT_LOOK) {
     follow_axis(d);
     return false;
   }
-  if (d->schedule.slot != SLOT_REGRESSION || w->samples_invalid) return false;
+  // The back-EMF's slot is one with room: with three windows the match of the voltage, which rests meanwhile
+  // (learning.c), with two the regression. Not where the observer has renewed its covariance, unless that goes on.
+  const bool full = d->samples.count >= ESTIMATOR_WINDOWS;
+  if (slot == SLOT_REGRESSION) {
+    w->axis_then_bam = w->axis.angle_bam;
+    if (full) return false;
+  } else if (slot != SLOT_VOLTAGE || !full) {
+    return false;
+  }
+  if (w->samples_invalid || (d->position.observer.gathered.periods == 0 && w->periods < WAITED_MAX)) return false;
   const emf_sign_result_t sign = look(d);
   forget_voltage(w);
   if (sign != EMF_SIGN_OPEN) w->open = false;

@@ -63,10 +63,10 @@ static bool is_running(void) {
   return now >= SCOPE_FILLING && now <= SCOPE_TRIGGERED;
 }
 
-// Nothing is recorded from here on.
+// Nothing is recorded from here on: an interrupt in between finds no onlooker any more.
 static void rest(scope_state_t now) {
-  scope.state = now;
   drive_onlooker = NULL;
+  scope.state = now;
 }
 
 static void forget_records(void) {
@@ -213,15 +213,18 @@ static bool is_met(int32_t value) {
 static void watch_trigger(int32_t value) {
   if (scope.setup.hysteresis < 0) follow_span(value);
   const bool met = is_met(value);
-  if (scope.state == SCOPE_FILLING && scope.recorded >= scope.setup.pretrigger) scope.state = SCOPE_ARMED;
-  if (met && scope.state == SCOPE_ARMED) scope.fired = true;
+  scope_state_t now = scope.state;
+  if (now == SCOPE_FILLING && scope.recorded >= scope.setup.pretrigger) {
+    now = SCOPE_ARMED;
+    scope.state = now;
+  }
+  if (met && now == SCOPE_ARMED) scope.fired = true;
 }
 
 // The trigger's signal is looked at once, where it is recorded as well.
-static void record(uint16_t known, int32_t trigger) {
+static void record(uint16_t here, uint16_t known, int32_t trigger) {
   const uint16_t unknown = (uint16_t)~known;
   const watched_t* const end = scope.watched + scope.setup.count;
-  const uint16_t here = scope.head;
   int16_t (*row)[SCOPE_DEPTH] = ring;
   for (const watched_t* w = scope.watched; w < end; w++, row++) {
     int16_t word = SCOPE_UNKNOWN;
@@ -231,12 +234,12 @@ static void record(uint16_t known, int32_t trigger) {
     }
     (*row)[here] = word;
   }
-  scope.head = (uint16_t)((scope.head + 1u) & RING_MASK);
+  scope.head = (uint16_t)((here + 1u) & RING_MASK);
   if (scope.recorded < SCOPE_DEPTH) scope.recorded++;
 }
 
+// The drive's onlooker while the scope runs, and only then.
 void scope_step(void) {
-  if (!is_running()) return;
   hal_profile_step(CYCLES_SCOPE);
   const uint16_t known = drive_known(&drive);
   const int32_t trigger = scope.trigger_look(&drive, known);
@@ -244,12 +247,14 @@ void scope_step(void) {
   if (--scope.wait > 0u) return;
   scope.wait = scope.setup.decimation;
   const uint16_t here = scope.head;
-  record(known, trigger);
-  if (scope.state == SCOPE_ARMED && scope.fired) {
+  record(here, known, trigger);
+  scope_state_t now = scope.state;
+  if (now == SCOPE_ARMED && scope.fired) {
     scope.mark = here;
     scope.mark_time_ms = drive.time_ms;
     scope.left = (uint16_t)(SCOPE_DEPTH - scope.setup.pretrigger);
-    scope.state = SCOPE_TRIGGERED;
+    now = SCOPE_TRIGGERED;
+    scope.state = now;
   }
-  if (scope.state == SCOPE_TRIGGERED && --scope.left == 0u) rest(SCOPE_DONE);
+  if (now == SCOPE_TRIGGERED && --scope.left == 0u) rest(SCOPE_DONE);
 }

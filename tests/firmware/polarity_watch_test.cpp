@@ -86,8 +86,32 @@ TEST_F(PolarityWatch, GathersTheCommandsSinceTheLastLook) {
   EXPECT_EQ(polarity_watch.voltage_q12.q, 3 * raw(-5.0, 12));
   EXPECT_EQ(polarity_watch.periods, 3);
   polarity_watch.samples_invalid = false;
+  inside::observer().gathered.periods = 0;
+  EXPECT_FALSE(step(SLOT_REGRESSION));
+  EXPECT_EQ(polarity_watch.periods, 4) << "which waits behind a renewal of the observer's covariance";
+  inside::observer().gathered.periods = 1;
+  drive.samples.count = ESTIMATOR_WINDOWS;
+  EXPECT_FALSE(step(SLOT_REGRESSION));
+  EXPECT_EQ(polarity_watch.periods, 5) << "nor beside the regression of three windows";
+  drive.samples.count = 2;
+  EXPECT_FALSE(step(SLOT_VOLTAGE));
+  EXPECT_EQ(polarity_watch.periods, 6) << "nor beside the match of the voltage";
   EXPECT_FALSE(step(SLOT_REGRESSION));
   EXPECT_EQ(polarity_watch.voltage_q12.d | polarity_watch.voltage_q12.q | polarity_watch.periods, 0);
+}
+
+// An observer that renews in every period is waited with for three rounds of the slots.
+TEST_F(PolarityWatch, WhatRenewsForEverIsNotWaitedWith) {
+  source(POSITION_OBSERVER);
+  inside::observer().gathered.periods = 0;
+  drive.samples.count = 2;
+  polarity_watch.samples_invalid = false;
+  for (int n = 1; n < 32; ++n) {
+    EXPECT_FALSE(step(SLOT_REGRESSION));
+    EXPECT_EQ(polarity_watch.periods, n);
+  }
+  EXPECT_FALSE(step(SLOT_REGRESSION));
+  EXPECT_EQ(polarity_watch.periods, 0);
 }
 
 // A large current turns the axis, and windows without an axis do not show it: then it is the one in use, and what had

@@ -361,7 +361,7 @@ TEST_F(Requests, TheScopeFromSetUpToTheLastWord) {
   for (int k = 0; k < 3000; ++k) {
     inside::selected().speed_bpp = bpp_of(k);
     inside::time_ms() = static_cast<std::uint32_t>(k);
-    scope_step();
+    if (drive_onlooker != nullptr) drive_onlooker();
   }
   const Answer state = ask(REQUEST_SCOPE_STATE);
   EXPECT_EQ(state.number(0, 1), static_cast<unsigned>(SCOPE_DONE));

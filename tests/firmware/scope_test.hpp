@@ -32,7 +32,7 @@ class Scope : public Drive {
     inside::current_dq_q20().d = static_cast<std::int32_t>(n_);
     inside::current_dq_q20().q = current;
     inside::time_ms() = n_ / 10u;
-    scope_step();
+    if (drive_onlooker != nullptr) drive_onlooker();
     n_++;
   }
   void interrupts(int count, std::int32_t current = 0) {
