@@ -90,10 +90,10 @@ TEST_F(PolarityWatch, GathersTheCommandsSinceTheLastLook) {
   EXPECT_FALSE(step(SLOT_REGRESSION));
   EXPECT_EQ(polarity_watch.periods, 4) << "which waits behind a renewal of the observer's covariance";
   inside::observer().gathered.periods = 1;
-  drive.samples.count = ESTIMATOR_WINDOWS;
+  inside::window_count() = ESTIMATOR_WINDOWS;
   EXPECT_FALSE(step(SLOT_REGRESSION));
   EXPECT_EQ(polarity_watch.periods, 5) << "nor beside the regression of three windows";
-  drive.samples.count = 2;
+  inside::window_count() = 2;
   EXPECT_FALSE(step(SLOT_VOLTAGE));
   EXPECT_EQ(polarity_watch.periods, 6) << "nor beside the match of the voltage";
   EXPECT_FALSE(step(SLOT_REGRESSION));
@@ -104,7 +104,7 @@ TEST_F(PolarityWatch, GathersTheCommandsSinceTheLastLook) {
 TEST_F(PolarityWatch, WhatRenewsForEverIsNotWaitedWith) {
   source(POSITION_OBSERVER);
   inside::observer().gathered.periods = 0;
-  drive.samples.count = 2;
+  inside::window_count() = 2;
   polarity_watch.samples_invalid = false;
   for (int n = 1; n < 32; ++n) {
     EXPECT_FALSE(step(SLOT_REGRESSION));
