@@ -48,7 +48,6 @@ inline auto& ripple_q16() { return drive.samples.ripple_q16; }
 inline auto& sensor_scale() { return drive.samples.scale; }
 inline auto& window_count() { return drive.samples.count; }
 inline auto& windows() { return drive.samples.windows; }
-inline auto& window_count() { return drive.samples.count; }
 
 // Angle and speed.
 inline auto& avv() { return drive.position.avv; }
