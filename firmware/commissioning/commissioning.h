@@ -68,10 +68,10 @@ typedef struct {
   int32_t blank;     // of it, in which the current settles
   int32_t step_q20;  // A by which the current may change in a period
   bool pause;
-  bool judge;        // the background level owes whether the level has a saliency
-  bool lost;         // it has none
-  int32_t plan[2];   // i_q reference: that of now, and the one before it
-  int32_t speed_q8;  // predicted motion in this train: binary angle per period
+  volatile bool judge;  // the background level owes whether the level has a saliency
+  volatile bool lost;   // it has none; written before `judge`
+  int32_t plan[2];      // i_q reference: that of now, and the one before it
+  int32_t speed_q8;     // predicted motion in this train: binary angle per period
   int32_t position_bam;
 } map_t;
 

@@ -149,6 +149,7 @@ int32_t commissioning_map_done(const map_t* m) {
 static void begin_map(map_t* m, int32_t most_q20) {
   m->most_q20 = most_q20;
   m->levels = MAP_LEVELS;
+  m->lost = false;
   m->level = 0;
   m->train = 0;
   m->tick = 0;
@@ -173,7 +174,6 @@ static void begin(const drive_t* d, map_t* m) {
   m->segment = 0;
   m->pause = true;
   m->judge = false;
-  m->lost = false;
   m->plan[0] = 0;
   m->plan[1] = 0;
   commissioning.target_bam = d->position.selected.angle_bam;

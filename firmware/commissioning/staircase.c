@@ -13,11 +13,10 @@
 // Levels: seven from 40 % to the whole current limit, but from where the ripple changes no current's sign on (a phase
 // has at least half of i_d, so that is twice the ripple and a fifth to spare). First with i_d > 0, not beyond half of
 // where the reluctance takes all of the magnet's torque, lambda/(Lq - Ld), for i_q has to hold the shaft; then with
-// i_d < 0, not beyond the field-weakening limit, for the magnets' sake (a rotor that is not held turns: there are none
-// to weaken); and neither beyond what a level may last without an overload: with the machine cool, a quarter of what
-// the overload's time constant bears. A sign that the ripple leaves no room takes the levels of the other: one side has
-// the drop in another place than the resistance, too. Resistance of winding and of devices cannot be told apart this
-// way: the devices' is kept as it was given.
+// i_d < 0, not beyond the field-weakening limit, for the magnets' sake; and neither beyond what a level may last
+// without an overload: with the machine cool, a quarter of what the overload's time constant bears. A sign that the
+// ripple leaves no room takes the levels of the other: one side has the drop in another place than the resistance, too.
+// Resistance of winding and of devices cannot be told apart this way: the devices' is kept as it was given.
 
 #include "firmware/base/clear.h"
 #include "firmware/board/functions.h"
@@ -56,7 +55,7 @@ static int32_t held_q20(void) {
 // Where there is room for a line. sign: -1 or 1.
 static uint16_t place_half(const drive_t* d, staircase_half_t* half, int32_t sign, int32_t most) {
   const int32_t least = q_max(most / 10 * 4, ripple_q20(d) / 10 * 24);
-  if (least > most / 4 * 3) return 0;
+  if (most <= 0 || least > most / 4 * 3) return 0;
   half->first_q20 = sign * least;
   half->step_q20 = sign * ((most - least) / (int32_t)(SIDE - 1u));
   return 1;
@@ -64,12 +63,10 @@ static uint16_t place_half(const drive_t* d, staircase_half_t* half, int32_t sig
 
 // With no room on either side there are no levels, and nothing will be found.
 static void place_levels(const drive_t* d, staircase_half_t half[2]) {
-  const bool held = !commissioning.uniform;
   const int32_t limit = bearable_q20();
-  const int32_t weakening = q_clamp(d->config.values.weakening_limit, limit / 2, limit);
   clear(half, 2u * sizeof *half);
-  const uint16_t above = place_half(d, &half[0], 1, held ? q_min(limit, held_q20()) : limit);
-  const uint16_t below = place_half(d, &half[1], -1, held ? weakening : limit);
+  const uint16_t above = place_half(d, &half[0], 1, commissioning.uniform ? limit : q_min(limit, held_q20()));
+  const uint16_t below = place_half(d, &half[1], -1, q_min(d->config.values.weakening_limit, limit));
   half[above] = half[below];  // of one with room and one without
 }
 

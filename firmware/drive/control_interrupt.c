@@ -10,7 +10,7 @@
 #include "hal/hal_replay.h"
 #include "hal/hal_sci.h"
 
-void (*drive_onlooker)(void);
+void (*volatile drive_onlooker)(void);
 
 void drive_control_step(drive_t* d) {
   schedule_next(d);
@@ -26,7 +26,8 @@ void drive_control_step(drive_t* d) {
   drive_control_current(d);
   hal_profile_step(CYCLES_CONTROL);
   drive_modulate(d);
-  if (drive_onlooker != NULL) drive_onlooker();
+  void (*const onlooker)(void) = drive_onlooker;
+  if (onlooker != NULL) onlooker();
 }
 
 void drive_control_interrupt(void) {

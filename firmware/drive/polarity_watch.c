@@ -16,7 +16,7 @@
 #define SUM_END_Q12 1073741824L       // of 64 periods of 4096 V
 #define VOLTS_END_Q12 16777216L       // 4096 V
 #define PERIODS_END 10000L            // a second: a round of the slots is much shorter
-#define WAITED_MAX 32                 // some three rounds of the slots
+#define WAITED_MAX 32                 // periods: then it is looked behind a renewal, too
 #define BANDWIDTH_STEP_Q30 12884902L  // 120 rad/s * T
 
 polarity_watch_t polarity_watch;
@@ -98,8 +98,9 @@ static emf_sign_result_t look(drive_t* d) {
   polarity_watch_t* const w = &polarity_watch;
   const rotation_t r = frame_rotation(d->position.selected.angle_bam - w->axis.angle_bam);
   const dq_t mean_q16 = {mean_volts_q16(w->voltage_q12.d, w->periods), mean_volts_q16(w->voltage_q12.q, w->periods)};
+  // A look that was late counts as one of 32 periods: the sign has to be seen twice.
   const emf_sign_seen_t seen = {on_axis(mean_q16, r), on_axis(d->control.measured_q20, r), w->axis.speed_bpp,
-                                w->periods};
+                                q_min(w->periods, WAITED_MAX)};
   return emf_sign_step(&w->sign, &d->model, &seen);
 }
 
@@ -127,7 +128,8 @@ bool polarity_watch_step(drive_t* d) {
   } else if (slot != SLOT_VOLTAGE || !full) {
     return false;
   }
-  if (w->samples_invalid || (d->position.observer.gathered.periods == 0 && w->periods < WAITED_MAX)) return false;
+  const bool renewed = d->position.observer.gathered.periods == 0 && drive_source_has(d, SOURCE_OBSERVES);
+  if (w->samples_invalid || (renewed && w->periods < WAITED_MAX)) return false;
   const emf_sign_result_t sign = look(d);
   forget_voltage(w);
   if (sign != EMF_SIGN_OPEN) w->open = false;

@@ -8,8 +8,9 @@
 /// What the control interrupt does in a period, between its begin and its end (control_interrupt.c).
 void drive_control_step(drive_t* d);
 
-/// Called at the end of that, at control interrupt level; NULL while nobody looks on, which costs least.
-extern void (*drive_onlooker)(void);
+/// Called at the end of that, at control interrupt level; NULL while nobody looks on, which costs least. The background
+/// level changes it at any time.
+extern void (*volatile drive_onlooker)(void);
 typedef int32_t signal_look_t(const volatile drive_t* d, uint16_t known);
 /// By the places of the signals; look_at_nothing for those of features that the edition has not (editions/).
 extern signal_look_t* const edition_signal_looks[];

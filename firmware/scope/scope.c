@@ -19,8 +19,8 @@ typedef struct {
   uint16_t needs, shift;
 } watched_t;
 
-// The background level changes set-up and ring only while `state` is IDLE or DONE, when the interrupt leaves them
-// alone; so the state is written first at an end and last at a start.
+// The background level changes set-up and ring only while the interrupt has no onlooker; so that is written first at an
+// end and last at a start.
 typedef struct {
   volatile scope_state_t state;
   uint16_t head;                  // the next record

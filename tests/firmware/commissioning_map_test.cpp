@@ -95,14 +95,17 @@ TEST_F(Phases, TheMapsTrainsPutTheShaftBack) {
 TEST_F(Phases, TheMapSumsItsGroups) {
   const map_t& m = commissioning.map;
   int trains[4] = {}, segments[4] = {};
+  int asked = 0;
   for (int n = 0; !step(commissioning_map); ++n) {
     ASSERT_LT(n, 2000000);
+    if (commissioning.map.judge) ++asked;
     commissioning.map.judge = false;
     inside::selected().angle_bam = commissioning.target_bam;
     if (m.level < 4) trains[m.level] = m.train, segments[m.level] = m.segment;
     inside::current_dq_q20() = {0, inside::reference_dq_q20().q};
     windows({0.0, real(inside::reference_dq_q20().q, 20)}, 0.0, 0.0);
   }
+  EXPECT_EQ(asked, 4) << "the background level, at the end of each";
   for (int level = 0; level < 4; ++level) {
     // A reversal takes twice the level at a twelfth of the limit a period, and 20 periods to settle.
     const int blank = 6 * (level + 1) + 20;

@@ -253,12 +253,25 @@ TEST_F(CommissioningStairs, ASideWithoutRoomTakesTheLevelsOfTheOther) {
   for (int k = 0; k < 7; ++k) EXPECT_EQ(level(7 + k), level(k));
 }
 
-// A rotor that is not held turns to where the current points: no level weakens its magnets.
-TEST_F(CommissioningStairs, ARotorThatTurnsHasTheWholeLimitOnBothSides) {
-  commissioning.uniform = true;
-  begin();
-  EXPECT_NEAR(level(6), 14.0, 1e-3);
-  EXPECT_NEAR(level(13), -14.0, 1e-3);
+// A rotor that is not held turns to where the current points, but need not: nor are its magnets weakened further.
+TEST_F(CommissioningStairs, NoRotorIsWeakenedBeyondItsLimit) {
+  for (const bool uniform : {false, true}) {
+    commissioning.uniform = uniform;
+    for (const double most : {12.0, 9.0, 0.0}) {
+      inside::config().values.weakening_limit = raw(most, 20);
+      begin();
+      EXPECT_NEAR(level(6), 14.0, 1e-3) << most;
+      EXPECT_NEAR(level(13), most > 0.0 ? -most : 14.0, 1e-3) << most << ": none takes the levels of the other";
+    }
+  }
+}
+
+TEST_F(CommissioningStairs, TheBackgroundLevelJudgesALevelOfTheMap) {
+  commissioning.map.lost = true;
+  commissioning.map.judge = true;
+  commissioning_service(&drive);
+  EXPECT_FALSE(commissioning.map.judge);
+  EXPECT_FALSE(commissioning.map.lost) << "what was not measured has lost nothing";
 }
 
 // A line is drawn over the upper quarter of the current at least.

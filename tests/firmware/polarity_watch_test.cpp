@@ -100,18 +100,21 @@ TEST_F(PolarityWatch, GathersTheCommandsSinceTheLastLook) {
   EXPECT_EQ(polarity_watch.voltage_q12.d | polarity_watch.voltage_q12.q | polarity_watch.periods, 0);
 }
 
-// An observer that renews in every period is waited with for three rounds of the slots.
+// An observer that renews in every period is waited with for 32 periods; other sources have none to renew.
 TEST_F(PolarityWatch, WhatRenewsForEverIsNotWaitedWith) {
-  source(POSITION_OBSERVER);
-  inside::observer().gathered.periods = 0;
-  inside::window_count() = 2;
-  polarity_watch.samples_invalid = false;
-  for (int n = 1; n < 32; ++n) {
+  for (const std::int32_t used : {std::int32_t{POSITION_OBSERVER}, std::int32_t{POSITION_AVV}}) {
+    SetUp();
+    source(used);
+    inside::observer().gathered.periods = 0;
+    inside::window_count() = 2;
+    polarity_watch.samples_invalid = false;
+    for (int n = 1; n < 32; ++n) {
+      EXPECT_FALSE(step(SLOT_REGRESSION));
+      EXPECT_EQ(polarity_watch.periods, used == POSITION_OBSERVER ? n : 0);
+    }
     EXPECT_FALSE(step(SLOT_REGRESSION));
-    EXPECT_EQ(polarity_watch.periods, n);
+    EXPECT_EQ(polarity_watch.periods, 0);
   }
-  EXPECT_FALSE(step(SLOT_REGRESSION));
-  EXPECT_EQ(polarity_watch.periods, 0);
 }
 
 // A large current turns the axis, and windows without an axis do not show it: then it is the one in use, and what had

@@ -27,7 +27,7 @@ flux_observer_t flux_observer;
 board_t board;
 uint16_t known_beside;
 int32_t source_deviation_q20;
-void (*drive_onlooker)(void);
+void (*volatile drive_onlooker)(void);
 
 static void any_fault(void) {
   const fault_record_t f = {any_u32,
