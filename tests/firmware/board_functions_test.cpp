@@ -180,6 +180,7 @@ TEST_F(BoardFunctions, TheConverterAndItsReferenceMayBeOffBySoMuch) {
   inside::loading() = true;  // what is wired is not known yet
   EXPECT_EQ(selftest_service(), FAULT_NONE);
   EXPECT_EQ(selftest.failed, 0);
+  inside::loading() = false;  // an edition without a store has nobody who ends it
 }
 
 }  // namespace
