@@ -36,7 +36,7 @@ def arrow(columns: Mapping[str, Any], units: Mapping[str, str], about: Mapping[s
 
 
 def _column(pa: Any, data: Any) -> Any:
-    """Numbers go without `pa.array`, which loads pandas wherever that is installed; what is stored otherwise does not."""
+    """Numbers go without `pa.array`, which loads pandas wherever that is installed; bits and other orders need it."""
     if data.dtype.kind not in "fiu" or not data.dtype.isnative or data.ndim != 1:
         return pa.array(data)
     buffer = pa.py_buffer(data if data.flags.c_contiguous else data.copy())
