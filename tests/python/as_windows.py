@@ -15,7 +15,7 @@ OTHERS = (
     *("prompt_toolkit.history", "rich.live", "rich.progress", "serial.tools.list_ports", "typer.core"),
 )
 ABSENT = {"fcntl", "grp", "pty", "pwd", "resource", "termios", "tty"}
-DRAWS = {"stillspin.report.explain_plot", "stillspin.report.plots", "stillspin.report.special_plots"}
+DRAWS = {f"stillspin.report.{name}" for name in ("canvas", "explain_plot", "plots", "special_plots")}
 """Need matplotlib, which the client alone has not, and are loaded by what has asked for it."""
 as_ever = builtins.__import__
 

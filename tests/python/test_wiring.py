@@ -27,7 +27,7 @@ def pins_of_the_guide() -> dict[str, int]:
 
 def parameter(name: str) -> list[int]:
     """Smallest, largest and default value in the units of its decimals."""
-    lists = sorted((ROOT / "firmware" / "dictionary").glob("parameters_*.h"))
+    lists = sorted((ROOT / "firmware").rglob("parameter_list.h"))
     rows = "".join(path.read_text(encoding="utf-8") for path in lists)
     row = re.search(rf"PARAMETER\(\d+, {name}, ([^)]*)", rows)
     assert row
