@@ -85,11 +85,15 @@ class Lists:
         """What stands at a place, and behind all that have one what has none.
 
         Raises:
-            ValueError: two stand at the same place.
+            ValueError: two stand at the same place, or rows before the first place of their file.
         """
         taken: set[str] = set()
         for text in texts:
             head, *placed = PLACE.split(text)
+            if placed and (lost := rows(head, JOINED[name].macro)):
+                raise ValueError(
+                    f"{name}: {' '.join(lost[0][:2])} stands before the first PLACE of its file; give it one"
+                )
             for place, block in zip(placed[::2], placed[1::2], strict=True):
                 if place in taken:
                     raise ValueError(f"{name}: place {place} is taken")

@@ -74,7 +74,7 @@ static inline bool drive_is_turning(const drive_t* d) {
 /// gates off nothing is, with an encoder neither: what it counts has an angle from the start's end on, while the drive
 /// runs.
 bool drive_knows_speed(const volatile drive_t* d);
-/// Bits of known_t that are not the drive's own: who sees to one writes it, at background level.
+/// Bits of known_t that are not the drive's own: the board, which has the only one, writes it at background level.
 extern uint16_t known_beside;
 /// The bits of known_t.
 uint16_t drive_known(const volatile drive_t* d);

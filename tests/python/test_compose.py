@@ -11,6 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
 
 import compose  # noqa: E402
+from edition_tables import TABLES  # noqa: E402
 
 SPOKEN = {"commands", "status_lines", "text_port", "requests"}
 EDITIONS = sorted(path.stem for path in (ROOT / compose.EDITIONS).glob("*.txt"))
@@ -184,10 +185,18 @@ def test_the_configuration_stops_where_the_edition_cannot_be_built(tmp_path: Pat
     assert "console needs link" in done.stderr
 
 
+def test_a_feature_that_is_reached_over_the_tree_is_outside_of_it(tmp_path: Path) -> None:
+    tree = tmp_path / "tree"
+    plant(tmp_path, "tree/firmware/editions/own.txt", "../../../mine\n")
+    plant(tmp_path, "mine/feature.toml", "")
+    edition = compose.read_edition(str(tree / "firmware/editions/own.txt"), tree)
+    assert [feature.name for feature in edition.outside(tree)] == ["../../../mine"]
+
+
 def test_what_has_not_changed_is_not_written_again(tmp_path: Path) -> None:
     sources = compose.write(tmp_path)
     before = {path: path.stat().st_mtime_ns for path in sources}
-    assert len(before) > len(compose.TABLES)
+    assert len(before) > len(TABLES)
     compose.write(tmp_path)
     assert {path: path.stat().st_mtime_ns for path in sources} == before
     compose.write(tmp_path, "minimal")

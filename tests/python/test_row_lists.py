@@ -59,6 +59,9 @@ def test_rows_stand_where_their_place_says_and_without_one_behind_all(tmp_path: 
     plant(tmp_path, "firmware/can/signal_list.h", "PLACE(30)\nSIGNAL(c)\n")
     with pytest.raises(ValueError, match=r"signal_list\.h: place 30 is taken"):
         lists.rows("signal_list.h", "SIGNAL")
+    plant(tmp_path, "firmware/can/signal_list.h", "SIGNAL(c)\nPLACE(20)\nSIGNAL(d)\n")
+    with pytest.raises(ValueError, match="c stands before the first PLACE of its file; give it one"):
+        lists.rows("signal_list.h", "SIGNAL")
 
 
 @pytest.mark.parametrize(

@@ -47,6 +47,9 @@ class Made:
     sources: tuple[str, ...]
 
 
+COMPOSER = tuple(
+    f"toolchain/{name}.py" for name in ("compose", "edition_tables", "pack_text", "row_lists", "word_code")
+)
 COMMANDS = {
     "image": Made(
         "make image-check",
@@ -54,13 +57,7 @@ COMMANDS = {
         (
             *DRIVE,
             *("hal/f2808/image/boot.asm", "toolchain/c28x", "toolchain/f2808", "toolchain/image"),
-            *(
-                "toolchain/standin/bin/cl2000",
-                "toolchain/pack_text.py",
-                "toolchain/row_lists.py",
-                "toolchain/word_code.py",
-            ),
-            *("toolchain/compose.py", "toolchain/costs.py"),
+            *("toolchain/standin/bin/cl2000", *COMPOSER, "toolchain/costs.py"),
         ),
     ),
     "isr-cost": Made(
@@ -69,7 +66,7 @@ COMMANDS = {
         (
             *DRIVE,
             *("toolchain/isr", "toolchain/f2808", "toolchain/standin/bin/cl2000", "toolchain/c28x-cl2000.cmake"),
-            *("toolchain/compose.py", "toolchain/costs.py", "tests/m3"),
+            *(*COMPOSER, "toolchain/costs.py", "tests/m3"),
         ),
     ),
     "prove": Made(

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import compose
+from edition_tables import TABLES
 
 from checks import Finding
 from checks.calls import DEFINITION, NAME, code
@@ -30,7 +31,7 @@ _READ = re.compile(r"(?<![\w.>])parameters\b(?:\s*\.\s*(\w+))?")
 def _named(word: str) -> str:
     """The function or table of a word; of a table that is composed all members count."""
     table, _, member = word.removeprefix("@").rpartition(".")
-    return table if any(kind.prefix + key == table for key, kind in compose.TABLES.items()) else member
+    return table if any(kind.prefix + key == table for key, kind in TABLES.items()) else member
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ class Program:
             self._take(path.relative_to(root).as_posix(), path)
         for feature in compose.all_features(root):
             for table in feature.rows:
-                name = table if compose.TABLES[table].form == "places" else f"edition_{table}"
+                name = table if TABLES[table].form == "places" else f"edition_{table}"
                 rows = " ".join(row for _, row in feature.places(table))
                 source = (feature.folder / compose.FEATURE).relative_to(root).as_posix()
                 self._shared[name].append(Piece(source, 1, rows))

@@ -10,6 +10,7 @@ from functools import cache
 
 import compose
 from checks.calls import DEFINITION, code
+from edition_tables import TABLES, Table
 
 from image.elf import ObjectFile, Section
 
@@ -25,7 +26,7 @@ def reached(objects: list[ObjectFile], name: str) -> set[str] | None:
     if sections:
         return {called for section in sections for _, _, called in section.relocations} & functions
     table, _, member = name.rpartition(".")
-    kind = next((t for key, t in compose.TABLES.items() if t.prefix + key == table), None)
+    kind = next((t for key, t in TABLES.items() if t.prefix + key == table), None)
     place = members(kind).get(member) if kind else None
     if place is None:
         return set() if in_other_editions(objects, name) else None
@@ -46,7 +47,7 @@ def _sections(objects: Iterable[ObjectFile], name: str) -> Iterator[Section]:
 
 
 @cache
-def members(table: compose.Table) -> dict[str, tuple[int, int]]:
+def members(table: Table) -> dict[str, tuple[int, int]]:
     """Where the members of a row are, and how long a row is, in octets."""
     kind = table.type.removeprefix("const ")
     struct = re.search(rf"typedef struct \{{([^{{}}]*)\}} {kind};", code(compose.ROOT / table.header))
