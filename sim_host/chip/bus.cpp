@@ -199,14 +199,9 @@ std::uint16_t Core::inspect(std::uint32_t address) {
   if (code_ != nullptr && CodeCpu::is_vector(address)) return code_->vector_word(address);
   if (device_at(address) == Device::kNone) return inspect_memory(address);
   if (!has_register(address)) return 0;
-  const Statistics before = statistics_;
-  inspecting_ = true;
-  const bool wide = device_at(address) == Device::kCan;
-  const std::uint16_t value =
-      wide ? static_cast<std::uint16_t>(read_can32(address & ~1u) >> 16 * (address & 1u)) : bus_read(address);
-  inspecting_ = false;
-  statistics_ = before;
-  return value;
+  const Inspection inspection(*this);
+  if (device_at(address) != Device::kCan) return bus_read(address);
+  return static_cast<std::uint16_t>(read_can32(address & ~1u) >> 16 * (address & 1u));
 }
 
 // ---- writes --------------------------------------------------------------------------------------------

@@ -215,6 +215,22 @@ class Core final : public ChipServices {
   void write_memory(std::uint32_t address, std::uint16_t value);
   std::uint16_t inspect_memory(std::uint32_t address);
 
+  // A look from outside, while it lasts: nobody counts what it touches.
+  class Inspection {
+   public:
+    explicit Inspection(Core& core) : core_(core), before_(core.statistics_) { core_.inspecting_ = true; }
+    ~Inspection() {
+      core_.inspecting_ = false;
+      core_.statistics_ = before_;
+    }
+    Inspection(const Inspection&) = delete;
+    Inspection& operator=(const Inspection&) = delete;
+
+   private:
+    Core& core_;
+    const Statistics before_;
+  };
+
   // Touched at every access: kept together.
   Tick now_ = 0;
   Tick horizon_ = -1;
@@ -224,7 +240,7 @@ class Core final : public ChipServices {
   bool pins_dirty_ = false;
   bool eallow_ = false;
   bool idle_ = false;
-  bool inspecting_ = false;  // a look from outside, which nobody counts
+  bool inspecting_ = false;
   std::uint16_t revision_ = kRevisionC;
   Interrupts interrupts_;
   Tick limit_ = 0;
