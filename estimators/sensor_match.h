@@ -11,13 +11,8 @@
 
 #include "estimators/regression.h"
 
-typedef struct {
-  int32_t mismatch_q30;  // g, within +-0.05
-} sensor_match_t;
-
-static inline void sensor_match_reset(sensor_match_t* s) { s->mismatch_q30 = 0; }
-
-/// mean_q30: Y0 T; share_q30: part of the error taken over per period. Call it in the alternating layout only.
-void sensor_match_step(sensor_match_t* s, const regression_t* r, int32_t mean_q30, int32_t share_q30);
+/// Moves g, which stays within +-0.05. mean_q30: Y0 T; share_q30: part of the error taken over per period. Call it in
+/// the alternating layout only.
+void sensor_match_step(int32_t* mismatch_q30, const regression_t* r, int32_t mean_q30, int32_t share_q30);
 
 #endif

@@ -6,7 +6,6 @@
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "firmware/start/start.h"
-#include "hal/hal_pwm.h"
 #include "hal/hal_replay.h"
 
 #define LONGER_TICKS 500
@@ -75,8 +74,7 @@ static void next_phase(drive_t* d) {
     c->mismatch_q30 = d->trim.mismatch_q30;
     return;
   }
-  hal_pwm_gates_off();
-  d->control.references.closed = false;
+  drive_open_power_stage(d);
   d->flags.spins = false;
   d->flags.over = true;
   c->evaluate = true;

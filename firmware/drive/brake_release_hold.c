@@ -53,12 +53,11 @@ static int32_t restoring_accel_q8(const drive_t* d) {
   return q_sat64(q_shr64(q_mac(q_product(behind, CONTROL_SQUARE_Q30), slow, 2 * CONTROL_STEP_Q30), 22));
 }
 
-bool hold_step(drive_t* d) {
+int32_t hold_step_q20(const drive_t* d) {
   hold_t* const h = &brake_release_hold;
-  if (!hold_is_on(d)) return false;
   h->left--;
   h->reference_bam += (uint32_t)d->control.ramp.value;
-  drive_control_t* const c = &d->control;
+  const drive_control_t* const c = &d->control;
   const int64_t load_q40 = q_product(d->position.selected.load_accel_q8, h->current_per_accel);
   const int32_t above_q20 = q_sat64(c->references.current_q20.q - q_shr64(load_q40, 20));
   const int32_t return_q20 = qc_mul_sat(qc_mul_sat(above_q20, qc_abs_sat(above_q20), 20), RETURN_Q30, 30);
@@ -66,7 +65,5 @@ bool hold_step(drive_t* d) {
   const int32_t current_q20 = q_sat64(q_shr64(command_q40, 20) - return_q20);
   const int32_t limited_q20 = q_clamp(current_q20, -c->headroom_q20, c->headroom_q20);
   const int32_t command_q20 = q_mix(c->references.current_q20.q, limited_q20, FILTER_Q30, 30);
-  c->references.current_q20.q =
-      q_clamp(command_q20, c->references.current_q20.q - SLEW_Q20, c->references.current_q20.q + SLEW_Q20);
-  return true;
+  return q_clamp(command_q20, c->references.current_q20.q - SLEW_Q20, c->references.current_q20.q + SLEW_Q20);
 }

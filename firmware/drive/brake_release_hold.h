@@ -18,7 +18,7 @@ void hold_begin(drive_t* d);
 void hold_end(void);
 static inline bool hold_is_on(const drive_t* d) { return brake_release_hold.left > 0u && d->state == DRIVE_RUN; }
 
-/// One period; false when it is over and the speed controller has the torque current.
-bool hold_step(drive_t* d);
+/// One period, while it is on: the torque current that holds the shaft, A.
+int32_t hold_step_q20(const drive_t* d);
 
 #endif

@@ -100,6 +100,8 @@ static void take_raw(drive_samples_t* s, const hal_adc_window_t* w) {
   s->raw_b_q8 = (int32_t)w->start_b * (256 / (int32_t)HAL_ADC_START_SAMPLES);
 }
 
+void sampling_scale_sensors(drive_t* d) { d->samples.scale = slopes_scale(&d->config.slopes, &d->trim); }
+
 void drive_read_samples(drive_t* d) {
   if (d->sliced != 0u) {
     edition_phase_control->samples(d);
@@ -114,7 +116,7 @@ void drive_read_samples(drive_t* d) {
   if (!complete) return;
   if (d->state == DRIVE_CALIBRATE) take_raw(s, &b->windows[0]);
   follow_link(d, b, p->window_count);
-  if (d->schedule.slot == SLOT_VOLTAGE) s->scale = slopes_scale(&d->config.slopes, &d->trim);
+  if (d->schedule.slot == SLOT_VOLTAGE) sampling_scale_sensors(d);
   const scale_t scale = scale_of(d);
   int16_t middles[ESTIMATOR_WINDOWS];
   for (uint16_t k = 0; k < p->window_count; k++) {

@@ -4,6 +4,7 @@
 #define STILLSPIN_FIRMWARE_DRIVE_SAMPLING_H
 
 #include "estimators/estimator.h"
+#include "firmware/mode/mode.h"
 #include "hal/hal_adc.h"
 
 typedef struct {
@@ -16,6 +17,9 @@ const sampling_buffer_t* sampling_swap(void);
 
 /// Empties both.
 void sampling_reset(void);
+
+/// From offsets and mismatch of the sensors as they are now to what their codes mean.
+void sampling_scale_sensors(drive_t* d);
 
 /// Background level: code of the auxiliary input in the last period's first window.
 uint16_t sampling_auxiliary(void);

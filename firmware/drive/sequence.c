@@ -6,7 +6,6 @@
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
-#include "hal/hal_pwm.h"
 #include "hal/hal_safety.h"
 #include "hal/qmath/qcall.h"
 
@@ -58,8 +57,7 @@ static void abandon(drive_t* d) {
 
 // Opens the power stage at once and goes back to READY.
 static void coast(drive_t* d) {
-  hal_pwm_gates_off();
-  d->control.references.closed = false;
+  drive_open_power_stage(d);
   abandon(d);
   drive_enter(d, DRIVE_READY);
 }

@@ -173,7 +173,8 @@ static void begin_millisecond(drive_t* d, bool held) {
 static bool weakens(const drive_t* d) { return drive_is_turning(d) || d->flags.caught; }
 
 void drive_control_speed(drive_t* d) {
-  const bool held = hold_step(d);
+  const bool held = hold_is_on(d);
+  if (held) d->control.references.current_q20.q = hold_step_q20(d);
   switch (d->schedule.task) {
     case TASK_SPEED:
       if (weakens(d)) refer_field(d);

@@ -12,7 +12,6 @@
 #include "estimators/blend.h"
 #include "estimators/deviation_observer.h"
 #include "estimators/inverse_inductance.h"
-#include "estimators/sensor_match.h"
 #include "estimators/slopes.h"
 #include "estimators/synchronism.h"
 #include "estimators/voltage_match.h"
@@ -47,7 +46,6 @@ typedef struct {
   avv_t avv;
   deviation_observer_t observer;
   blend_t blend;
-  sensor_match_t sensors;
   bool is_near;             // what was last regressed is near enough to learn from
   int32_t torque_accel_q8;  // acceleration of the torque of the measured current
 } drive_position_t;

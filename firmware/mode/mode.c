@@ -68,13 +68,17 @@ static void note(const drive_t* d, drive_fault_t fault) {
   fault_history_add(&r);
 }
 
-void drive_trip(drive_t* d, drive_fault_t fault) {
+void drive_open_power_stage(drive_t* d) {
   hal_pwm_gates_off();
+  d->control.references.closed = false;
+}
+
+void drive_trip(drive_t* d, drive_fault_t fault) {
+  drive_open_power_stage(d);
   if (d->state == DRIVE_FAULT) return;
   note(d, fault);
   d->fault = fault;
   begin(d, DRIVE_FAULT);
-  d->control.references.closed = false;
   d->request.speed = false;  // asked for before the fault
   d->control.command_rpm_q16 = 0;
   d->control.target_bpp = 0;

@@ -85,6 +85,9 @@ int32_t drive_rpm_q16(const drive_t* d, int32_t speed_bpp);
 /// Latches a fault with its circumstances (fault_history.h) and opens the power stage. The speed command is forgotten.
 void drive_trip(drive_t* d, drive_fault_t fault);
 
+/// Opens the power stage, and the current loop with it.
+void drive_open_power_stage(drive_t* d);
+
 /// COMMISSION, at rest until now: speed control and position source have the shaft, as at the beginning of a run.
 void drive_begin_spin(drive_t* d);
 

@@ -33,7 +33,6 @@ static bool prepare(drive_t* d, drive_state_t behind) {
   d->model = d->config.nameplate;
   inertia_match_reset(&inertia_match);
   speed_controller_scale(&d->control.speed, INERTIA_SAME_Q24);
-  d->position.sensors.mismatch_q30 = d->config.sensor_mismatch_q30;
   d->trim.mismatch_q30 = d->config.sensor_mismatch_q30;
   position_preset(d, 0, 0);
   reset_control(d);

@@ -33,7 +33,6 @@ class Bench {
       : truth_(truth), theta_(theta), model_(model_of(Motor{})) {
     start_ = bam(theta - initial_error);
     avv_preset(&avv_, start_, 0, 0);
-    sensor_match_reset(&sensors_);
   }
   void sensor_error(double g) { g_ = g; }
   void hold_the_angle() { held_ = true; }
@@ -46,7 +45,7 @@ class Bench {
       if (held_) avv_preset(&avv_, start_, 0, 0);
       (void)avv_step(&avv_, &kAvv, in.get());
       if (adapt) inverse_inductance_step(&model_, &avv_.regression, kShare);
-      if (match) sensor_match_step(&sensors_, &avv_.regression, mean_q30(), match_share);
+      if (match) sensor_match_step(&mismatch_q30_, &avv_.regression, mean_q30(), match_share);
       machine_model_move(&model_, 0);
       largest_mismatch_ = std::max(largest_mismatch_, std::fabs(mismatch()));
       if (n >= periods - 600) sum += mismatch();
@@ -54,7 +53,7 @@ class Bench {
     mean_mismatch_ = sum / 600.0;
   }
   double mean_mismatch() const { return mean_mismatch_; }  // over the last 600 periods, whole rounds of dv
-  double mismatch() const { return real(sensors_.mismatch_q30, 30); }
+  double mismatch() const { return real(mismatch_q30_, 30); }
   double largest_mismatch() const { return largest_mismatch_; }
   double angle_error() const { return wrapped(theta_ - rad(avv_.observer.angle_bam)); }
   double ld() const { return kPeriod / real(model_.yd_q30, 30); }
@@ -70,7 +69,7 @@ class Bench {
   bool held_ = false;
   machine_model_t model_;
   avv_t avv_ = {};
-  sensor_match_t sensors_ = {};
+  std::int32_t mismatch_q30_ = 0;
 };
 
 Motor scaled(double d, double q) {

@@ -18,7 +18,6 @@ extern "C" {
 #include "estimators/inverse_inductance_tensor.h"
 #include "estimators/polarity.h"
 #include "estimators/saturation.h"
-#include "estimators/sensor_match.h"
 #include "estimators/synchronism.h"
 #include "estimators/zvv.h"
 }
@@ -139,12 +138,6 @@ TEST(Fresh, Synchronism) {
   auto s = used<synchronism_t>();
   synchronism_reset(&s);
   EXPECT_EQ(s.error_q16.d | s.error_q16.q | s.turned_q16 | s.emf_q16 | s.limit_q16 | s.debounce, 0);
-}
-
-TEST(Fresh, SensorMatch) {
-  auto s = used<sensor_match_t>();
-  sensor_match_reset(&s);
-  EXPECT_EQ(s.mismatch_q30, 0);
 }
 
 TEST(Fresh, InertiaMatch) {

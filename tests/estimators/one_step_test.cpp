@@ -35,15 +35,15 @@ regression_t regression(double spread, double along, double mirror, double curl)
 
 // Gains of 1 + g and 1 - g put Y0 g / sqrt(3) across dv.
 TEST(OneStep, SensorMatch) {
-  sensor_match_t s = {raw(0.001, 30)};
+  std::int32_t mismatch_q30 = raw(0.001, 30);
   const double mean = 0.0166, off = -0.004, spread = 40000.0;
   const regression_t r = regression(spread, 0.0, 0.0, off * mean / std::sqrt(3.0) * spread);
-  sensor_match_step(&s, &r, raw(mean, 30), raw(kShare, 30));
-  EXPECT_NEAR(real(s.mismatch_q30, 30), 0.001 + kShare * off, 1e-8);
+  sensor_match_step(&mismatch_q30, &r, raw(mean, 30), raw(kShare, 30));
+  EXPECT_NEAR(real(mismatch_q30, 30), 0.001 + kShare * off, 1e-8);
   regression_t blind = r;
   blind.information = 0;
-  sensor_match_step(&s, &blind, raw(mean, 30), raw(kShare, 30));
-  EXPECT_NEAR(real(s.mismatch_q30, 30), 0.001 + kShare * off, 1e-8);
+  sensor_match_step(&mismatch_q30, &blind, raw(mean, 30), raw(kShare, 30));
+  EXPECT_NEAR(real(mismatch_q30, 30), 0.001 + kShare * off, 1e-8);
 }
 
 TEST(OneStep, InverseInductance) {

@@ -178,7 +178,6 @@ class Drive : public ::testing::Test {
   static void forget_windows() {
     if (!drive_is_energised() || inside::state() == DRIVE_START) return;
     position_preset(&drive, 0, 0);
-    sensor_match_reset(&inside::sensors_match());
     inside::sensor_trim().mismatch_q30 = 0;
     inside::supervision() = drive_supervision_t{};
   }

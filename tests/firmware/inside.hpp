@@ -59,7 +59,6 @@ inline auto& low_speed_estimate() { return drive.position.low; }
 inline auto& observer() { return drive.position.observer; }
 inline auto& seen() { return drive.position.seen; }
 inline auto& selected() { return drive.position.selected; }
-inline auto& sensors_match() { return drive.position.sensors; }
 inline auto& torque_accel_q8() { return drive.position.torque_accel_q8; }
 
 // Speed and current control.

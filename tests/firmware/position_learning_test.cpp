@@ -20,7 +20,6 @@ class Learning : public Sources {
     run_with(source);
     see(0);
     inside::model() = inside::config().nameplate;
-    sensor_match_reset(&inside::sensors_match());
     inside::sensor_trim().mismatch_q30 = 0;
     inside::is_near() = true;
     inside::modulator().is_alternating = true;
@@ -34,7 +33,7 @@ class Learning : public Sources {
     inside::observer().regression = r;
   }
   static bool inverse_inductances() { return inside::model().trim.mean_q30 != 0; }
-  static bool sensors() { return inside::sensors_match().mismatch_q30 != 0; }
+  static bool sensors() { return inside::sensor_trim().mismatch_q30 != 0; }
   static bool voltage() { return inside::model().trim.rs_q24 != 0 || inside::model().trim.psi_q16 != 0; }
 };
 
@@ -51,7 +50,6 @@ TEST_F(Learning, ADriveThatRunsLearnsEachInItsTurn) {
         EXPECT_EQ(inverse_inductances(), near && slot == SLOT_INDUCTANCE) << slot;
         EXPECT_EQ(sensors(), near && slot == SLOT_INDUCTANCE && alternating) << slot << "all directions, or none";
         EXPECT_EQ(voltage(), near && slot == SLOT_VOLTAGE) << slot;
-        EXPECT_EQ(inside::sensor_trim().mismatch_q30, inside::sensors_match().mismatch_q30);
       }
     }
   }

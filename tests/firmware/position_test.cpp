@@ -214,11 +214,11 @@ TEST_F(Position, AHeldShaftIsHeldInRunOnly) {
   run_with(POSITION_OBSERVER);
   brake_release_hold.left = 100;
   EXPECT_TRUE(hold_is_on(&drive));
-  EXPECT_TRUE(hold_step(&drive));
+  drive_control_speed(&drive);
   EXPECT_EQ(brake_release_hold.left, 99u);
   inside::state() = DRIVE_STOP;
   EXPECT_FALSE(hold_is_on(&drive));
-  EXPECT_FALSE(hold_step(&drive));
+  drive_control_speed(&drive);
   EXPECT_EQ(brake_release_hold.left, 99u);
 }
 

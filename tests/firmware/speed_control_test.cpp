@@ -147,13 +147,14 @@ TEST_F(SpeedTask, AHeldShaftIsHeldStiffly) {
     inside::selected() = {bam(0.3 + w * kPeriod), bpp(w - c.slow),
                           static_cast<std::int32_t>(c.load_nm * real(inside::model().accel_q12, 12) * 256.0), 32767};
     inside::reference_dq_q20().q = raw(c.iq, 20);
-    ASSERT_TRUE(hold_step(&drive));
+    ASSERT_TRUE(hold_is_on(&drive));
+    const double held = real(hold_step_q20(&drive), 20);
     const double per_ampere = per_nm * torque_constant();
     const double above = c.iq - c.load_nm / torque_constant();
     const double gained = 0.7 * above * per_ampere * std::abs(above) / 0.7 * kPeriod / 2.0;
     const double accel = 225.0 * 225.0 * c.off + 450.0 * (c.slow - gained) + c.load_nm * per_nm;
     const double wanted = accel / per_ampere;
-    EXPECT_NEAR(iq(), c.iq + std::clamp(0.7 * (wanted - c.iq), -0.7, 0.7), 2e-3) << c.off << c.slow << c.load_nm;
+    EXPECT_NEAR(held, c.iq + std::clamp(0.7 * (wanted - c.iq), -0.7, 0.7), 2e-3) << c.off << c.slow << c.load_nm;
     EXPECT_EQ(brake_release_hold.left, 9u);
   }
 }

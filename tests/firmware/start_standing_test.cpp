@@ -41,7 +41,6 @@ TEST_F(StartStanding, BeginsWithNothingOfTheLastRun) {
   EXPECT_EQ(inside::model().trim.rs_q24, 0);
   EXPECT_EQ(inside::model().accel_q12, inside::config().nameplate.accel_q12);
   EXPECT_EQ(inertia_match.ratio_q24, INERTIA_SAME_Q24);
-  EXPECT_EQ(inside::sensors_match().mismatch_q30, 4321);
   EXPECT_EQ(inside::sensor_trim().mismatch_q30, 4321);
   EXPECT_TRUE(board.gates_on);
 }

@@ -79,13 +79,13 @@ static void step_zvv(const estimator_input_t* in) {
 }
 
 static void learn(void) {
-  sensor_match_t sensors = {any_from(-53687091L, 53687091L)};
+  int32_t mismatch_q30 = any_from(-53687091L, 53687091L);
   const regression_t r = any_regression();
   machine_model_t* const m = &around.model;
   any_model(m);
   if (any_bool()) inverse_inductance_preset(m, any_i32, any_i32);
   inverse_inductance_step(m, &r, any_share());
-  sensor_match_step(&sensors, &r, any_from(1, INT32_MAX), any_share());
+  sensor_match_step(&mismatch_q30, &r, any_from(1, INT32_MAX), any_share());
   any_model(m);
   if (any_bool()) voltage_match_resistance(m, any_i32);
   voltage_match_step(m, &r, machine_speed_rad_q30(any_speed()), any_share());

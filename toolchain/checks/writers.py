@@ -17,9 +17,7 @@ WRITERS = {
         "firmware/start/",  # the state START
         "firmware/commissioning/",  # the state COMMISSION
         "firmware/drive/speed.c",  # RUN, STOP and a spin
-        "firmware/drive/brake_release_hold.c",  # RUN, while a brake opens
-        "firmware/drive/sequence.c",  # opens the power stage
-        "firmware/mode/mode.c",  # so does a fault
+        "firmware/mode/mode.c",  # the power stage opens
     ),
     ("drive_control_t", "control", "measured_q20"): (
         "firmware/drive/position.c",
@@ -29,7 +27,6 @@ WRITERS = {
     ("drive_position_t", "position", "selected"): ("firmware/drive/position.c",),
     ("drive_samples_t", "samples", ""): (
         "firmware/drive/sampling.c",
-        "firmware/drive/reset.c",  # the sensors' scale at power-on
         "firmware/hysteresis/hysteresis.c",  # in the place of windows
     ),
     ("schedule_t", "schedule", ""): ("firmware/drive/schedule.c",),

@@ -1,5 +1,6 @@
 // What the windows say of machine and sensors, learnt slowly.
 
+#include "estimators/sensor_match.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
 #include "firmware/sources/sources.h"
@@ -11,8 +12,7 @@ static bool is_slot(const drive_t* d, schedule_slot_t slot) { return d->schedule
 
 static void match_sensors(drive_t* d, const regression_t* r, int32_t share_q30) {
   if (!d->modulation.state.is_alternating) return;
-  sensor_match_step(&d->position.sensors, r, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, share_q30);
-  d->trim.mismatch_q30 = d->position.sensors.mismatch_q30;
+  sensor_match_step(&d->trim.mismatch_q30, r, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, share_q30);
 }
 
 void source_learn(drive_t* d, const regression_t* r) {
