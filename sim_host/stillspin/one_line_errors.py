@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from types import FrameType
 from typing import Any
 
+from typer import Abort
 from typer.core import TyperGroup
 from typer.exceptions import TyperException
 
@@ -61,6 +62,12 @@ class OneLineErrors(TyperGroup):
             status = _complain(str(error), error.exit_code)
         except TyperException as error:
             status = _complain(error.format_message(), error.exit_code)
+        except Abort as error:  # a question without an answer
+            print(file=sys.stderr)
+            if isinstance(error.__context__, EOFError):
+                status = _complain("the input ended before the last question; nothing was done", ExitCode.BAD_INPUT)
+            else:
+                status = _complain("interrupted before the last question; nothing was done", ExitCode.INTERRUPTED)
         except BrokenPipeError:
             status = _nobody_reads()
         except SystemExit as error:

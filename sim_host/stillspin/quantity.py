@@ -75,7 +75,7 @@ class Range:
     def _split(self, typed: str, name: str) -> tuple[float, str]:
         match = _NUMBER.fullmatch(typed)
         if not match:
-            why = ": no comma, a point stands before the decimals" if _COMMA.fullmatch(typed) else ""
+            why = ": no comma, decimals come after a point" if _COMMA.fullmatch(typed) else ""
             raise InputError(f"{name}: '{typed.strip()}' is no number{why}; {self}")
         number, unit = match.groups()
         if unit and unit != self.unit:

@@ -2,6 +2,9 @@
 
 import importlib
 import re
+import signal
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -301,6 +304,32 @@ def test_the_questions_are_asked_one_by_one(native, tmp_path):
     assert result.exit_code == 0, result.output
     assert result.stdout.count(":") >= len(ANSWERS)
     assert tomllib.loads(path.read_text(encoding="utf-8"))["link"]["source_voltage"] == 300
+
+
+def test_a_wrong_answer_is_asked_for_again_at_once(native, tmp_path):
+    path = tmp_path / "asked.toml"
+    result = CliRunner().invoke(cli.app, ["motor", "new", str(path)], input="2.5\n" + "\n".join(ANSWERS.values()) + "\n")
+    assert result.exit_code == 0, result.output
+    assert result.output.count("Pole pairs") == 2 and "2.5 is not a whole number" in result.output
+    assert tomllib.loads(path.read_text(encoding="utf-8"))["machine"]["pole_pairs"] == 4
+
+
+@pytest.mark.parametrize(("ctrl_c", "status", "words"), [(False, 2, "the input ended"), (True, 130, "interrupted")])
+def test_who_gives_up_at_a_question_is_told_that_nothing_was_done(tmp_path, ctrl_c, status, words):
+    path = tmp_path / "asked.toml"
+    with subprocess.Popen(
+        [sys.executable, "-m", "stillspin", "motor", "new", str(path)],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    ) as asking:  # fmt: skip
+        assert asking.stdout and asking.stdin
+        assert asking.stdout.read(10) == "Pole pairs"
+        if ctrl_c:
+            asking.send_signal(signal.SIGINT)
+            asking.wait(10)
+        said = asking.communicate(timeout=10)[1]
+    assert asking.returncode == status
+    assert said.split("\n")[-2] == f"stillspin: {words} before the last question; nothing was done"
+    assert not path.exists()
 
 
 @pytest.mark.parametrize(

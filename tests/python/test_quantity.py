@@ -34,7 +34,7 @@ def test_whole_numbers_may_be_written_as_any_number(typed, number):
         (POLES, 2.5, "pole_pairs: 2.5 is not a whole number; 1 … 20"),
         (POLES, "25e-1", "pole_pairs: 25e-1 is not a whole number; 1 … 20"),
         (POLES, "2 A", "pole_pairs has no unit, not in A: '2 A'; 1 … 20"),
-        (CURRENT, "1,5", "'1,5' is no number: no comma, a point stands before the decimals; 0.10 … 16.00 A"),
+        (CURRENT, "1,5", "'1,5' is no number: no comma, decimals come after a point; 0.10 … 16.00 A"),
         (CURRENT, "1,000", "'1,000' is no number: no comma"),
         (CURRENT, "1.000,5", "'1.000,5' is no number: no comma"),
         (CURRENT, "1,5 A", "'1,5 A' is no number: no comma"),

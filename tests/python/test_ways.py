@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from function_desk import Desk
-from test_bring_up import shape
+from test_bring_up import agrees, shape
 from typer.main import get_command
 
 from stillspin import cli, core
@@ -39,6 +39,11 @@ def shell_lines(name: str) -> list[str]:
     return [line for block in blocks(name) for line in block.splitlines() if line.startswith((STILLSPIN, "cmp "))]
 
 
+def blocks_of_the_console() -> list[str]:
+    text = (ROOT / "docs/console.md").read_text(encoding="utf-8")
+    return [block for block in re.findall(r"^```\n(.*?)^```$", text, re.M | re.S) if block.startswith("> ")]
+
+
 @pytest.mark.parametrize(("name", "plant"), [("tune", {}), ("board", {"link": {"source_voltage": 1.0}})])
 def test_the_console_answers_what_the_way_says(name, plant) -> None:
     native = core.load()
@@ -59,6 +64,32 @@ def test_the_console_answers_what_the_way_says(name, plant) -> None:
                 assert shape(line) in said, f"{command}: {line!r} is not among {sorted(said)}"
     finally:
         desk.board.close()
+
+
+@pytest.mark.parametrize("block", blocks_of_the_console(), ids=lambda block: block.splitlines()[0][2:])
+def test_the_console_answers_what_its_page_says(block: str) -> None:
+    """What is set or refused to the letter, what is measured with the same words."""
+    native = core.load()
+    bench = profile.load("bench", core.plant_schema(native), core.parameters(native), "A")
+    desk = Desk(bench.parameters, {**bench.plant, "solver": {"method": "rk4"}}, wait=250)
+    try:
+        if "> look" in block:  # behind a stop with `coast`, as the page says
+            desk.run(1200)
+            desk.wait(1000)
+            desk.type("coast")
+        for command, answers in asked(block):
+            came = desk.type(command, PATIENCE).splitlines()
+            assert {shape(answer) for answer in answers} <= {shape(line) for line in came}, (command, came)
+            if command.split()[0] in ("set", "ref"):
+                assert all(any(agrees(command, line, answer) for line in came) for answer in answers), came
+    finally:
+        desk.board.close()
+
+
+def asked(block: str) -> list[tuple[str, list[str]]]:
+    """Lines typed, and what the page shows below each."""
+    parts = re.split(r"^> (.*)\n", block, flags=re.MULTILINE)[1:]
+    return [(command, answers.splitlines()) for command, answers in zip(parts[::2], parts[1::2], strict=True)]
 
 
 def test_the_commands_of_the_way_to_tests_end_as_it_says(tmp_path: Path) -> None:

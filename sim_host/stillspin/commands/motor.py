@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -78,24 +79,34 @@ def _asked(key: str) -> typer.models.OptionInfo:
     asked = next(question for question in questions.QUESTIONS if question.key == key)
     prompt = f"{asked.text}, {asked.unit}" if asked.unit else asked.text
     flag = f"--{key.replace('_', '-')}"
-    option: typer.models.OptionInfo = typer.Option(flag, prompt=prompt, metavar="NUMBER", help=f"{prompt}.")
+    option: typer.models.OptionInfo = typer.Option(
+        flag, prompt=prompt, parser=partial(_answer, asked), metavar="NUMBER", help=f"{prompt}."
+    )
     return option
+
+
+def _answer(asked: questions.Question, typed: str) -> float:
+    """A complaint of this kind has the question asked again."""
+    try:
+        return asked.range.read(typed, asked.name)
+    except InputError as error:
+        raise typer.BadParameter(str(error)) from None
 
 
 @app.command()
 def new(
     *,
     file: Annotated[Path, typer.Argument(help="The file to write; one that exists is not touched.")],
-    pole_pairs: Annotated[str, _asked("pole_pairs")],
-    resistance: Annotated[str, _asked("resistance")],
-    inductance_d: Annotated[str, _asked("inductance_d")],
-    inductance_q: Annotated[str, _asked("inductance_q")],
-    emf: Annotated[str, _asked("emf")],
-    rated_current: Annotated[str, _asked("rated_current")],
-    inertia: Annotated[str, _asked("inertia")],
-    voltage: Annotated[str, _asked("voltage")],
-    current_range: Annotated[str, _asked("current_range")],
-    speed: Annotated[str, _asked("speed")],
+    pole_pairs: Annotated[float, _asked("pole_pairs")],
+    resistance: Annotated[float, _asked("resistance")],
+    inductance_d: Annotated[float, _asked("inductance_d")],
+    inductance_q: Annotated[float, _asked("inductance_q")],
+    emf: Annotated[float, _asked("emf")],
+    rated_current: Annotated[float, _asked("rated_current")],
+    inertia: Annotated[float, _asked("inertia")],
+    voltage: Annotated[float, _asked("voltage")],
+    current_range: Annotated[float, _asked("current_range")],
+    speed: Annotated[float, _asked("speed")],
 ) -> None:
     """Ask what a nameplate says, and write a motor's file; each question is an option, too."""
     if file.exists():
