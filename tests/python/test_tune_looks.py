@@ -13,6 +13,10 @@ from stillspin.tune.server import Server
 
 TABS = ("live", "parameters", "scope", "faults", "commissioning")
 SIZES = [(1440, 900), (1024, 768), (390, 844)]
+CUT_OFF = """() => [...document.querySelectorAll("body *")]
+  .filter((at) => at.checkVisibility() && at.clientWidth && at.scrollWidth > at.clientWidth && at.tagName != "CANVAS")
+  .map((at) => `${at.tagName} ${at.id} ${at.className}: ${at.scrollWidth} in ${at.clientWidth}`)"""
+"""What is wider than the box that it stands in: words run out of it, or are reached by scrolling sideways alone."""
 
 
 @pytest.mark.parametrize(("width", "height"), SIZES)
@@ -27,6 +31,7 @@ def test_nothing_is_cut_off_and_no_third_of_it_is_empty(page, server, width, hei
             box = wide.bounding_box()
             assert box["x"] >= 0
             assert box["x"] + box["width"] <= width
+        assert page.evaluate(CUT_OFF) == []
         sheet = page.locator(f"#{tab}").bounding_box()
         assert sheet["y"] + sheet["height"] > 0.95 * height
     page.click("[data-tab=live]")

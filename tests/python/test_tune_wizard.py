@@ -5,7 +5,7 @@ import importlib
 import pytest
 from desk import needs_board
 from test_motor_files import ANSWERS, findings
-from test_tune_looks import SIZES
+from test_tune_looks import CUT_OFF, SIZES
 from test_tune_on_board import LONG, SLOW, change, opened, picture
 
 from stillspin.cases import nameplate, questions
@@ -23,6 +23,7 @@ def fits(page):
     for width, height in SIZES:
         page.set_viewport_size({"width": width, "height": height})
         assert page.evaluate("document.documentElement.scrollWidth") == width
+        assert page.evaluate(CUT_OFF) == []
         for wide in page.locator("#wizard button:visible, #wizard input:visible, #wizard table:visible").all():
             box = wide.bounding_box()
             assert box["x"] >= 0
