@@ -101,6 +101,7 @@ def test_the_commands_of_the_way_to_tests_end_as_it_says(tmp_path: Path) -> None
         run = [sys.executable, "-m", "stillspin", *words[1:]] if line.startswith(STILLSPIN) else words
         done = subprocess.run(run, capture_output=True, text=True, cwd=tmp_path, check=False)
         assert done.returncode == (1 if "open_phase" in line else 0), f"{line}\n{done.stdout}\n{done.stderr}"
+        assert "Traceback" not in done.stdout + done.stderr, line
 
 
 def test_the_python_of_the_way_to_tests_runs() -> None:

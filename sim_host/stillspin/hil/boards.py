@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -56,8 +57,8 @@ class Board:
 
     def __enter__(self) -> Self:
         """Switch it on."""
-        self._directory = tempfile.TemporaryDirectory(prefix="stillspin-hil-")
-        directory = Path(self._directory.name)
+        # No TemporaryDirectory: when this process ends, that one goes before the boards that are kept until then.
+        self._directory = directory = Path(tempfile.mkdtemp(prefix="stillspin-hil-"))
         self._eeprom = directory / "memory"
         if self.memory:
             self._eeprom.write_bytes(self.memory)
@@ -95,7 +96,7 @@ class Board:
             if line.startswith(WARNING):
                 print(line)
         self.memory = self._eeprom.read_bytes() if self._eeprom.exists() else b""
-        self._directory.cleanup()
+        shutil.rmtree(self._directory, ignore_errors=True)
 
 
 def _command(*options: str) -> Sequence[str]:
