@@ -308,7 +308,9 @@ def test_the_questions_are_asked_one_by_one(native, tmp_path):
 
 def test_a_wrong_answer_is_asked_for_again_at_once(native, tmp_path):
     path = tmp_path / "asked.toml"
-    result = CliRunner().invoke(cli.app, ["motor", "new", str(path)], input="2.5\n" + "\n".join(ANSWERS.values()) + "\n")
+    result = CliRunner().invoke(
+        cli.app, ["motor", "new", str(path)], input="2.5\n" + "\n".join(ANSWERS.values()) + "\n"
+    )
     assert result.exit_code == 0, result.output
     assert result.output.count("Pole pairs") == 2 and "2.5 is not a whole number" in result.output
     assert tomllib.loads(path.read_text(encoding="utf-8"))["machine"]["pole_pairs"] == 4
