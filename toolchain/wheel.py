@@ -48,7 +48,7 @@ def _wheel(staged: Path, out: Path) -> Path:
 
 def client(out: Path, work: Path) -> Path:
     """The wheel of the client: the sources, the firmware's own parameter table, the book, the schemas."""
-    from stillspin import core  # noqa: PLC0415 - the package is looked for only where a wheel is wanted
+    from stillspin import core, revision  # noqa: PLC0415 - the package is looked for only where a wheel is wanted
     from stillspin.commands import schema  # noqa: PLC0415
 
     for folder in FOLDERS:
@@ -65,6 +65,7 @@ def client(out: Path, work: Path) -> Path:
     shutil.copy(ROOT / "LICENSE", work)
     table = json.dumps(core.load().parameters(), indent=1, default=list)
     (work / "stillspin" / core.PARAMETERS).write_text(table + "\n", encoding="utf-8")
+    (work / "stillspin" / revision.WRITTEN.name).write_text(revision.revision() + "\n", encoding="utf-8")
     schemas = work / "stillspin" / schema.SHIPPED
     schemas.mkdir()
     for kind in schema.KINDS:

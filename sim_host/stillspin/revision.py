@@ -8,6 +8,10 @@ from stillspin import __version__
 from stillspin.resources import PACKAGE
 
 
+WRITTEN = PACKAGE / "revision.txt"
+"""What the wheel was made from (toolchain/wheel.py); a source tree has none."""
+
+
 def _git(*arguments: str) -> str | None:
     try:
         done = subprocess.run(
@@ -19,11 +23,11 @@ def _git(*arguments: str) -> str | None:
 
 
 def revision() -> str:
-    """`git describe` of the source tree this package runs from, else the version of the package.
+    """`git describe` of the source tree that this package runs from or was made from, else the version of the package.
 
     A package installed into an environment that happens to lie inside somebody else's repository is not described by
     that repository: only a tree that tracks this very file is.
     """
     if _git("ls-files", "--error-unmatch", "revision.py") is None:
-        return __version__
+        return WRITTEN.read_text(encoding="utf-8").strip() if WRITTEN.exists() else __version__
     return _git("describe", "--always", "--dirty", "--tags") or __version__

@@ -15,6 +15,7 @@ from empty_environment import Environment, closure
 
 import stillspin
 from stillspin.commands import schema
+from stillspin.revision import revision
 
 pytestmark = needs_board
 
@@ -157,6 +158,11 @@ def test_letters_that_a_file_on_windows_does_not_take_are_no_traceback(client):
     said = client.run("stillspin", "params", PYTHONIOENCODING="ascii")
     assert (said.returncode, said.stderr) == (0, "")
     assert "?" in said.stdout
+
+
+def test_it_says_which_sources_it_was_made_from(client):
+    assert client.run("stillspin", "--version").stdout == f"stillspin {stillspin.__version__} ({revision()})\n"
+    assert revision() != stillspin.__version__
 
 
 @pytest.mark.parametrize(
