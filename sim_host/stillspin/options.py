@@ -72,7 +72,7 @@ RunImageOption = Annotated[
     typer.Option(
         "--image",
         metavar="FILE",
-        help="Let this image of the C28x drive the plant, told over its serial port, with the native run beside it; "
+        help="Let this image of the C28x drive the plant, told over its serial port; the native drive runs beside it; "
         "both are recorded every 5 ms.",
     ),
 ]

@@ -99,7 +99,7 @@ def campaign(
             "--shrink",
             metavar="N",
             parser=whole("--shrink", 0, _MOST),
-            help="For so many cases that fail: find what is enough to make each fail; write it as a scenario file.",
+            help="Of up to so many failed cases find what alone makes each fail, and write it as a scenario file.",
         ),
     ] = 3,
     file: Annotated[

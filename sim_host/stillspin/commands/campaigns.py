@@ -157,7 +157,7 @@ def reproduce(
         bool,
         typer.Option(
             "--paper-scheme/--no-paper-scheme",
-            help="Run the paper's figures and what is about the position error with the paper's scheme, too.",
+            help="Run the scenarios of the paper's figures and of the position error with the paper's own scheme, too.",
         ),
     ] = True,
     image: RunImageOption = None,

@@ -76,8 +76,8 @@ def hil(
 ) -> None:
     """Step a board through scenarios: this computer runs the plant, and compares every answer bit for bit.
 
-    The board is compared with a virtual drive of its own edition. Its power stage stays off; it leaves this mode by a
-    reset, which the end of the command brings about.
+    The board is compared with a virtual drive of its own edition. Its power stage stays off; at the end of the
+    command a reset takes it out of this mode.
     Virtual boards do as many runs at a time as --jobs says, a real one does one.
     Exit status 0 when every run is identical, 4 when one differs.
     """

@@ -26,7 +26,7 @@ def schema(
     kind: Annotated[str, typer.Argument(metavar="KIND", help="motor, profile, scenario, spread or faults.")],
     out: Annotated[Path | None, typer.Option("--out", "-o", help="File to write [default: to the terminal].")] = None,
 ) -> None:
-    """Write the JSON schema of a kind of file; editors check a file with it whose first line is #:schema FILE."""
+    """Write the JSON schema of a kind of file, for editors: they check a file whose first line is #:schema FILE."""
     if kind not in KINDS:
         raise InputError(f"there is no kind of file '{kind}'{did_you_mean(kind, KINDS)}")
     shipped = PACKAGE / SHIPPED / f"{kind}.json"
