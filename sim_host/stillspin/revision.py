@@ -7,7 +7,6 @@ import subprocess
 from stillspin import __version__
 from stillspin.resources import PACKAGE
 
-
 WRITTEN = PACKAGE / "revision.txt"
 """What the wheel was made from (toolchain/wheel.py); a source tree has none."""
 
