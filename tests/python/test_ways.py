@@ -111,6 +111,22 @@ def test_the_python_of_the_way_to_tests_runs() -> None:
     assert done.stdout.split() == ["3000.0", "running"]
 
 
+def test_a_board_says_what_its_page_shows(tmp_path: Path) -> None:
+    shown = re.search(
+        r"^```\n(\S*stillspin board .*?)\n\n(.*?)^```$", (ROOT / "docs/board.md").read_text(), re.M | re.S
+    )
+    assert shown
+    words = shlex.split(shown[1].replace("/tmp", str(tmp_path)))[1:]
+    run = [sys.executable, "-m", "stillspin", *words, "--for", "0.1"]
+    done = subprocess.run(run, capture_output=True, text=True, check=False)
+
+    def said(text: str) -> list[str]:
+        return [re.sub(r"\S*stillspin console|/dev/pts/\d+", "", shape(line)) for line in text.splitlines()]
+
+    expected = said(shown[2].replace("/tmp", str(tmp_path)))
+    assert said(done.stdout)[: len(expected)] == expected, done.stdout
+
+
 def test_the_way_to_tuning_needs_few_commands() -> None:
     """Those that stay open, and files of parameters."""
     assert {shlex.split(line)[1] for line in shell_lines("tune") if line.startswith(STILLSPIN)} <= {*STAYS, "params"}
