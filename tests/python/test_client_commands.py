@@ -4,6 +4,7 @@ import csv
 import errno
 import json
 import os
+import re
 import signal
 import struct
 import subprocess
@@ -136,7 +137,12 @@ def test_a_capture_is_written_in_every_form(ask, tmp_path):
     assert "512 records every 0.1 ms" in result.stdout
     table = pq.read_table(tmp_path / "capture.parquet")
     assert table.column_names == ["time", "speed", "current_d"]
-    assert json.loads(table.schema.metadata[b"stillspin"])["trigger"]["level"] == 5.0
+    about = json.loads(table.schema.metadata[b"stillspin"])
+    assert about["trigger"]["level"] == 5.0
+    drive = re.search(r"board \w+, .*table [0-9a-f]{8}", about["firmware"])
+    assert drive
+    for ending in set(capture_file.WRITERS) - {".csv", ".parquet"}:
+        assert drive[0].encode() in (tmp_path / f"capture{ending}").read_bytes(), ending
     rows = list(csv.reader((tmp_path / "capture.csv").open()))
     assert rows[0] == ["time [s]", "speed [rpm]", "current_d [A]"]
     assert len(rows) == 513

@@ -18,7 +18,8 @@ from stillspin.runs import records
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_DRAWINGS = (".svg", ".png", ".pdf")
+_DRAWINGS = {".svg": "Description", ".png": "Description", ".pdf": "Subject"}
+"""What a drawing's format calls the words about it."""
 
 
 def check(path: Path) -> None:
@@ -110,7 +111,7 @@ def draw(capture: Capture) -> Figure:
 def _drawing(path: Path, capture: Capture) -> None:
     figure = draw(capture)
     with extras.need("matplotlib").rc_context(STYLE):
-        figure.savefig(path, dpi=110)
+        figure.savefig(path, dpi=110, metadata={_DRAWINGS[path.suffix]: f"firmware {capture.version}"})
 
 
 WRITERS: dict[str, Callable[[Path, Capture], None]] = {
