@@ -21,7 +21,7 @@ static int16_t length_for(int32_t accel_q8) {
   return (accel_q8 > ACCEL_LEAST_Q8 / 4) ? 2 * POLARITY_SEGMENT : 4 * POLARITY_SEGMENT;
 }
 
-void polarity_begin(polarity_t* s, uint32_t angle_bam, int32_t current_q20, int32_t accel_q8) {
+void polarity_begin(polarity_t* s, int32_t current_q20, int32_t accel_q8, uint32_t angle_bam, int32_t speed_bpp) {
   if (s->current_q20 == 0) s->length = length_for(accel_q8);
   s->passes = 0;
   s->current_q20 = current_q20;
@@ -30,15 +30,16 @@ void polarity_begin(polarity_t* s, uint32_t angle_bam, int32_t current_q20, int3
   s->rough_bam = 0;
   s->sigma_q8 = 0;
   s->bounded = false;
-  polarity_again(s, angle_bam);
+  polarity_again(s, angle_bam, speed_bpp);
 }
 
-void polarity_again(polarity_t* s, uint32_t angle_bam) {
+void polarity_again(polarity_t* s, uint32_t angle_bam, int32_t speed_bpp) {
   s->tick = 0;
   s->segment = 0;
   s->passes = q_min16((int16_t)(s->passes + 1), PASSES_MAX);
   s->last_bam = angle_bam;
   s->origin_bam = angle_bam;
+  s->speed_bpp = speed_bpp;
   s->result = POLARITY_PENDING;
 }
 
@@ -75,6 +76,8 @@ static void begin_segment(polarity_t* s) {
 
 int32_t polarity_step(polarity_t* s, uint32_t angle_bam) {
   if (s->result != POLARITY_PENDING) return 0;
+  s->origin_bam += (uint32_t)s->speed_bpp;
+  s->last_bam += (uint32_t)s->speed_bpp;
   const int16_t weight = angle_weight[s->segment];
   // Only the second half of a pause counts: the current has died away.
   const int16_t inside = (int16_t)(s->tick - s->length / 2);

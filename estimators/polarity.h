@@ -10,9 +10,10 @@
 // A segment lasts 20 to 160 periods, for the shaft to turn by some degrees in it: 40 on a machine whose current and
 // inertia go together as usual, the whole test then 560 (56 ms at 10 kHz). A response below a quarter of what the
 // inertia lets expect is ambiguous (blocked shaft, far too large inertia, noise), and so is one below four times its
-// standard error, which the scatter of the angle tells. A shaft may be any number of times lighter than nominal; but
-// where the test is not the first, because the voltage was too low for the one before, a response above eight times the
-// expectation is what that one has left moving (bounded).
+// standard error, which the scatter of the angle tells. A shaft that turns already, too slowly for its EMF to be seen,
+// is asked in a frame that turns with it: what is left of its speed goes out of the response. A shaft may be any number
+// of times lighter than nominal; but where the test is not the first, because the voltage was too low for the one
+// before, a response above eight times the expectation is what that one has left moving (bounded).
 
 #ifndef STILLSPIN_ESTIMATORS_POLARITY_H
 #define STILLSPIN_ESTIMATORS_POLARITY_H
@@ -35,17 +36,18 @@ typedef struct {
   int32_t rough_bam;     // sum of the differences between neighbouring angles in the pauses, 2^-8
   uint32_t last_bam;     // the angle before
   int32_t sigma_q8;      // response over its standard error
-  uint32_t origin_bam;   // angle at the beginning
+  uint32_t origin_bam;   // angle at the beginning, turned on with the shaft's speed
+  int32_t speed_bpp;     // of the shaft at the beginning
   bool bounded;          // a response far beyond the expected one says nothing
   polarity_result_t result;
 } polarity_t;
 
 /// amplitude in A; accel_q8: electrical acceleration that it makes. The first one, on memory that is all zero, chooses
 /// the segment's length for the shaft to turn by 1.5 to 10 degrees in it; those after it keep it. Not bounded.
-void polarity_begin(polarity_t* s, uint32_t angle_bam, int32_t current_q20, int32_t accel_q8);
+void polarity_begin(polarity_t* s, int32_t current_q20, int32_t accel_q8, uint32_t angle_bam, int32_t speed_bpp);
 
 /// Repeats the test with the same current and adds to what it has shown; at most 6 passes.
-void polarity_again(polarity_t* s, uint32_t angle_bam);
+void polarity_again(polarity_t* s, uint32_t angle_bam, int32_t speed_bpp);
 
 /// One period: takes the measured angle (unfiltered), returns the q-axis current to command, A Q20.
 int32_t polarity_step(polarity_t* s, uint32_t angle_bam);

@@ -102,13 +102,14 @@ static int32_t motion_current(const drive_start_t* s) {
 static void begin_motion(drive_t* d) {
   drive_start_t* const s = &starting;
   if (d->found.phase != START_MOTION) s->tries = 0;
-  const uint32_t angle_bam = d->position.avv.observer.angle_bam;
+  const tracking_observer_t* const seen = &d->position.avv.observer;
   if (s->starved && s->tries > 0u) {
-    polarity_again(&s->motion, angle_bam);
+    polarity_again(&s->motion, seen->angle_bam, seen->speed_bpp);
   } else {
     const int32_t current = motion_current(s);
     const int32_t torque_q16 = qc_mul(machine_torque_constant_q24(&d->model, 0), current, 28);
-    polarity_begin(&s->motion, angle_bam, current, qc_mul_sat(torque_q16, d->model.accel_q12, 20));
+    polarity_begin(&s->motion, current, qc_mul_sat(torque_q16, d->model.accel_q12, 20), seen->angle_bam,
+                   seen->speed_bpp);
     s->motion.bounded = s->starved;
   }
   begin_test(d, START_MOTION);

@@ -154,7 +154,7 @@ TEST(Fresh, InertiaMatch) {
 TEST(Fresh, Polarity) {
   auto s = used<polarity_t>();
   s.length = POLARITY_SEGMENT;  // with the first test of a start
-  polarity_begin(&s, kAngle, raw(3.0, 20), 256);
+  polarity_begin(&s, raw(3.0, 20), 256, kAngle, 0);
   EXPECT_EQ(s.tick | s.segment | s.response_bam | s.rough_bam | s.sigma_q8, 0);
   EXPECT_EQ(s.current_q20, raw(3.0, 20));
   EXPECT_EQ(s.expected_bam, 2 * POLARITY_SEGMENT * POLARITY_SEGMENT);

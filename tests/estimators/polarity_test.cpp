@@ -30,13 +30,15 @@ struct Conditions {
   double noise = 0.0;      // rad, of every angle measured
   bool bounded = false;
   double expected_inertia = 1.0;  // times motor A's: the test is as long as this wants it
+  double speed = 0.0;             // of the shaft at the beginning, rad per period
+  double told = 1.0;              // share of it that the test is told
 };
 
 // A test of a machine with so many times motor A's inertia.
-polarity_t begun(double angle = 0.0, double inertia = 1.0) {
+polarity_t begun(double angle = 0.0, double inertia = 1.0, double speed = 0.0) {
   polarity_t s = {};
   const std::int32_t accel = accel_q8(accel_per_amp() * kAmps / inertia);
-  polarity_begin(&s, bam(angle), raw(kAmps, 20), accel);
+  polarity_begin(&s, raw(kAmps, 20), accel, bam(angle), raw(speed / kTurn, 32));
   return s;
 }
 
@@ -49,10 +51,10 @@ struct Outcome {
 Outcome run(const Conditions& c, std::uint64_t seed = 1) {
   Random random(seed);
   Outcome o = {};
-  double angle = 2.9, speed = 0.0;  // near half a turn, so that the wrap is part of the test
+  double angle = 2.9, speed = c.speed;  // near half a turn, so that the wrap is part of the test
   const double start = angle;
   const double turned = c.wrong_way_round ? kPi : 0.0;  // what the saliency took for the d-axis
-  o.state = begun(angle + turned, c.expected_inertia);
+  o.state = begun(angle + turned, c.expected_inertia, c.told * c.speed);
   o.state.bounded = c.bounded;
   const int periods = 2 * POLARITY_SEGMENTS * o.state.length;
   for (int n = 0; n < periods; ++n) {
@@ -100,6 +102,25 @@ TEST(Polarity, ALightShaftIsBelievedUnlessSomethingElseMayMoveIt) {
   }
 }
 
+// A heavy shaft takes long, and turns by more than a whole turn meanwhile where it is not at rest. The speed that the
+// test is told is that of an observer, which is off by some.
+TEST(Polarity, AShaftThatTurnsAlreadyIsAskedInItsOwnFrame) {
+  for (const double hertz : {-25.0, -10.0, -3.0, 3.0, 10.0, 25.0}) {
+    for (const double told : {0.95, 1.0, 1.05}) {
+      for (const bool wrong : {false, true}) {
+        Conditions c;
+        c.inertia = c.expected_inertia = 8.0;
+        c.speed = hertz * kTurn * kPeriod;
+        c.told = told;
+        c.wrong_way_round = wrong;
+        const Outcome o = run(c);
+        EXPECT_EQ(o.state.result, wrong ? POLARITY_WRONG : POLARITY_RIGHT) << hertz << ", " << told;
+        EXPECT_NEAR(response(o), wrong ? -1.0 : 1.0, 0.02) << hertz << ", " << told;
+      }
+    }
+  }
+}
+
 // Passes are counted together: their mean response, and a standard error that falls with the root of their number.
 TEST(Polarity, PassesAddUp) {
   polarity_t s = begun();
@@ -116,7 +137,7 @@ TEST(Polarity, PassesAddUp) {
     EXPECT_EQ(s.passes, pass);
     EXPECT_NEAR(s.sigma_q8, first * std::sqrt(pass), 0.01 * first) << pass;
     EXPECT_NEAR(static_cast<double>(s.response_bam) / pass, 2.0 * 0.02 / kTurn * 4294967296.0, 1e5) << pass;
-    polarity_again(&s, 0);
+    polarity_again(&s, 0, 0);
   }
 }
 

@@ -20,12 +20,12 @@ static int32_t any_current(void) { return any_from(AMPERES_Q20 / 8, CURRENT_MAX_
 static void move(void) {
   polarity_t s;
   s.current_q20 = 0;
-  polarity_begin(&s, any_u32, any_current(), any_i32);
+  polarity_begin(&s, any_current(), any_i32, any_u32, any_i32);
   //@ loop widen_hints s.passes, 6;
   while (any_bool()) {
     s.bounded = any_bool();
     (void)polarity_step(&s, any_u32);
-    if (any_bool()) polarity_again(&s, any_u32);
+    if (any_bool()) polarity_again(&s, any_u32, any_i32);
   }
 }
 
