@@ -159,18 +159,28 @@ static start_phase_t step_pulse(drive_t* d) {
   return START_GOES_ON;
 }
 
+static void carry_on(drive_t* d, int32_t axis_bam) {
+  flying_rotor_t* const rotor = &flying_start.rotor;
+  rotor->angle_bam += (uint32_t)rotor->speed_bpp + (uint32_t)axis_bam;
+  position_preset_axis(d, rotor->angle_bam, rotor->speed_bpp);
+}
+
+// Where no saliency shows the axis there is nothing to learn and nothing to watch: the pulses' word is the last.
+static start_phase_t run_at_once(drive_t* d) {
+  carry_on(d, 0);
+  const bool ready = d->flags.invalid == 0u && start_has_exclusive_slot(d);
+  if (ready) start_run(d, flying_start.rotor.angle_bam, flying_start.rotor.speed_bpp);
+  return START_GOES_ON;
+}
+
 // The first periods go to the axis and the inverse inductances, in the frame that turns with the rotor as the back-EMF
 // has it.
 static void learn(drive_t* d) {
   flying_start_t* const s = &flying_start;
-  s->rotor.angle_bam += (uint32_t)s->rotor.speed_bpp;
   int32_t axis_bam = 0;
   s->learnt = start_sees_axis(d, d->flags.invalid == 0u, &axis_bam);
-  if (s->learnt) {
-    s->rotor.angle_bam += (uint32_t)q_limit(axis_bam, STRAY_MAX_BAM);
-    s->flux_due = true;
-  }
-  position_preset_axis(d, s->rotor.angle_bam, s->rotor.speed_bpp);
+  s->flux_due = s->learnt;
+  carry_on(d, s->learnt ? q_limit(axis_bam, STRAY_MAX_BAM) : 0);
 }
 
 static void begin_catch(drive_t* d) {
@@ -186,6 +196,7 @@ static start_phase_t step_catch(drive_t* d) {
     return START_GOES_ON;
   }
   if (d->flags.gates_off) start_power(d, true);
+  if (start_is_open_loop(d)) return run_at_once(d);
   if (!s->learnt) {
     learn(d);
     return START_GOES_ON;
