@@ -31,22 +31,17 @@
 /// One level of the DC staircase. Sums over periods and over windows; currents and voltages Q20, the sag V^2 Q12.
 typedef struct {
   int64_t current, factor, command, sag;  // per period
-  int64_t window_current, window_factor, residual;
+  int64_t residual;                       // per window
   int32_t periods, windows;
   int32_t link_q16;
 } staircase_level_t;
-
-/// One half of the levels, one above the other.
-typedef struct {
-  int32_t first_q20, step_q20;
-} staircase_half_t;
 
 typedef struct {
   staircase_level_t level[STAIRCASE_LEVELS];
   uint16_t index;
   uint16_t turn;  // period of those in which the sums take turns
   int32_t tick;
-  staircase_half_t half[2];
+  int32_t level_q20, step_q20;  // the level, and by how much the next one is above it
   dead_time_config_t one_volt;  // the devices, if their drop were that
 } staircase_t;
 
@@ -75,7 +70,7 @@ typedef struct {
   int32_t position_bam;
 } map_t;
 
-/// Means at a steady speed.
+/// Sums at a steady speed.
 typedef struct {
   int64_t speed, voltage_q, current_q, current_d;
   int32_t periods;
@@ -92,6 +87,7 @@ typedef struct {
   spin_ramp_t ramp[SPIN_RAMPS];
   bool begun, arrived;
   uint16_t leg;
+  uint32_t angle_bam;  // of the last period
   int32_t tick;
 } spin_t;
 

@@ -16,6 +16,7 @@
 #define STIFFNESS_Q30 38655L   // (60 rad/s * 100 us)^2
 #define DAMPING_Q30 12884902L  // 2 * 60 rad/s * 100 us
 #define SIXTH_BAM 715827883L
+#define QUARTER_BAM 1073741824L
 #define TURN_STEP_BAM 238609L  // 0.02 degrees electrical per period
 #define SETTLE_PERIODS 6000
 #define SLOPE_STEPS 64  // periods for the current limit
@@ -26,15 +27,26 @@ void commissioning_set_d(drive_t* d, int32_t level_q20) {
   r->d = q_clamp(level_q20, r->d - step, r->d + step);
 }
 
-void commissioning_hold(drive_t* d) {
+static int32_t holding_q20(const drive_t* d) {
   const estimator_output_t* const p = &d->position.selected;
   const int32_t error_bam = angle_diff_bam(commissioning.target_bam, p->angle_bam);
   const int32_t command_q8 =
       qc_sub_sat(qc_mul_sat(error_bam, STIFFNESS_Q30, 22), qc_mul_sat(p->speed_bpp, DAMPING_Q30, 22));
   const int32_t torque_q20 = qc_mul_sat(qc_add_sat(command_q8, p->load_accel_q8), d->model.torque_per_accel_q24, 20);
-  const int32_t current = qc_over(torque_q20, d->control.per_torque_constant, 24);
-  const int32_t limit = commissioning.uniform ? 0 : d->config.values.current_limit / 4;
-  d->control.references.current_q20.q = q_clamp(current, -limit, limit);
+  return qc_over(torque_q20, d->control.per_torque_constant, 24);
+}
+
+// A rotor that follows the current swings about it, and next to nothing brakes that: the current across goes against
+// the EMF that the voltage across shows, as if that axis were closed by 1/16 of L/T.
+static int32_t braking_q20(const drive_t* d) { return -qc_mul_sat(d->control.command_q16.q, d->model.yq_q30, 22); }
+
+// Braking has a low-pass of 64 periods, so that the current controller does not answer to itself.
+void commissioning_hold(drive_t* d) {
+  const bool uniform = commissioning.uniform;
+  const int32_t limit = d->config.values.current_limit / 4;
+  const int32_t wanted = q_limit(uniform ? braking_q20(d) : holding_q20(d), limit);
+  int32_t* const current = &d->control.references.current_q20.q;
+  *current = uniform ? *current + (wanted - *current) / 64 : wanted;
 }
 
 bool commissioning_align(drive_t* d) {
@@ -43,13 +55,15 @@ bool commissioning_align(drive_t* d) {
     c->uniform = d->found.uniform;
     d->control.references.closed = true;
     c->target_bam = d->position.selected.angle_bam;
-    const int32_t sixths = (int32_t)q_div((int32_t)(c->target_bam / 2u), SIXTH_BAM / 2, 0);
+    const uint32_t near_bam = c->target_bam + (uint32_t)(c->uniform ? QUARTER_BAM : 0);
+    const int32_t sixths = (int32_t)q_div((int32_t)(near_bam / 2u), SIXTH_BAM / 2, 0);
     c->goal_bam = (uint32_t)sixths * (uint32_t)SIXTH_BAM;
   }
   const int32_t left = angle_diff_bam(c->goal_bam, c->target_bam);
   c->target_bam += (uint32_t)q_clamp(left, -TURN_STEP_BAM, TURN_STEP_BAM);
   commissioning_hold(d);
-  if (c->tick < SETTLE_PERIODS || !start_has_exclusive_slot(d)) return false;
+  if (c->uniform) commissioning_set_d(d, d->config.values.current_limit / 2);
+  if (c->tick < (c->uniform ? 2 : 1) * SETTLE_PERIODS || !start_has_exclusive_slot(d)) return false;
   c->model = d->model;
   machine_model_move(&c->model, 0);
   return true;

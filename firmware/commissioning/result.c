@@ -101,6 +101,10 @@ static commissioning_verdict_t judge_unsaturated(const map_values_t* v, int32_t 
   return worst(d, q);
 }
 
+static int32_t percent_q16(int32_t part, int32_t whole) {
+  return qc_mul_sat(q_div(part, whole, 24), 100L * 65536L, 24);
+}
+
 static void judge_level(const map_values_t* v, const map_values_t* zero, uint16_t level, int32_t level_q20,
                         commissioning_verdict_t unsaturated, commissioning_report_t* r) {
   const commissioning_verdict_t measured = v->valid ? VERDICT_USED : VERDICT_NOT_MEASURED;
@@ -109,10 +113,8 @@ static void judge_level(const map_values_t* v, const map_values_t* zero, uint16_
   commissioning_verdict_t all = worst(measured, singular ? VERDICT_NOT_PHYSICAL : VERDICT_USED);
   all = worst(all, (current == VERDICT_USED) ? current : VERDICT_NOT_MEASURED);
   all = worst(all, (unsaturated == VERDICT_USED) ? unsaturated : VERDICT_DEPENDS);
-  const int32_t percent_d_q16 = qc_mul_sat(q_div(v->ldd_q20, zero->ldd_q20, 24), 100L * 65536L, 24);
-  const int32_t percent_q_q16 = qc_mul_sat(q_div(v->lqq_q20, zero->lqq_q20, 24), 100L * 65536L, 24);
-  offer(r, (uint16_t)(ID_lqq_1 + level), percent_q_q16, all);
-  offer(r, (uint16_t)(ID_ldd_1 + level), percent_d_q16, all);
+  offer(r, (uint16_t)(ID_lqq_1 + level), percent_q16(v->lqq_q20, zero->lqq_q20), all);
+  offer(r, (uint16_t)(ID_ldd_1 + level), percent_q16(v->ldd_q20, zero->ldd_q20), all);
   offer(r, (uint16_t)(ID_ldq_1 + level), v->ldq_q20, all);
 }
 
@@ -185,7 +187,7 @@ static void judge_map(const commissioning_t* c, const map_values_t* zero, commis
 
 void commissioning_solve_motion(commissioning_t* c) {
   const spin_values_t v = spin_solve(&c->spin, c->model.rs_q24, c->model.ld_q30, c->model.pole_pairs);
-  const int32_t inertia_q24 = v.inertia_up_q24 / 2 + v.inertia_down_q24 / 2;
+  const int32_t inertia_q24 = v.inertia_q24;
   c->torque_q24 = c->model.torque_q24;
   c->accel_q12 = c->model.accel_q12;
   if (!v.valid || v.flux_q28 <= 0 || near(v.flux_q28, c->model.flux_q28, 2) != VERDICT_USED) return;
@@ -210,7 +212,7 @@ static void judge_spin(const commissioning_t* c, commissioning_verdict_t resista
   commissioning_verdict_t flux = worst(measured, agree(v.flux_q28, v.flux_low_q28, 10));
   flux = worst(flux, (v.flux_q28 <= 0) ? VERDICT_NOT_PHYSICAL : near(v.flux_q28, p->magnet_flux, 2));
   offer(r, ID_magnet_flux, v.flux_q28, flux);
-  const int32_t inertia_q24 = v.inertia_up_q24 / 2 + v.inertia_down_q24 / 2;
+  const int32_t inertia_q24 = v.inertia_q24;
   commissioning_verdict_t inertia = worst(measured, agree(v.inertia_up_q24, v.inertia_down_q24, 5));
   if (!c->uniform) inertia = worst(inertia, agree(inertia_q24, inertia_from_trains(c, inertia_q24), 4));
   inertia = worst(inertia, (inertia_q24 <= 0) ? VERDICT_NOT_PHYSICAL : near(inertia_q24, p->inertia, 20));

@@ -16,44 +16,40 @@
 
 typedef struct {
   int32_t current[STAIRCASE_LEVELS], factor[STAIRCASE_LEVELS], voltage[STAIRCASE_LEVELS];
+  bool stayed;
 } columns_t;
 
 static int32_t for_fit(int32_t x) { return q_limit(x, FIT_END); }
 
 static int32_t mean_of(int64_t sum, int32_t count) { return for_fit(fit_ratio(sum, count, 0)); }
 
+// The link falls under the vector along the current and rises under its opposite. Next to all of a period is under
+// either: what the windows see of it is missing in the mean, too.
+static int32_t sag_q20(const staircase_level_t* l) { return q_div(fit_ratio(l->sag, l->periods, 0), l->link_q16, 24); }
+
+// A shaft that stays where it was taken to has no phase near zero, and a volt of drop is 4/3 V along d at every level:
+// stayed.
 static bool command_columns(const staircase_t* s, columns_t* c) {
+  c->stayed = true;
   for (uint16_t k = 0; k < STAIRCASE_LEVELS; k++) {
     const staircase_level_t* const l = &s->level[k];
-    if (l->periods == 0) return false;
+    if (l->periods == 0 || l->windows == 0) return false;
     c->current[k] = mean_of(l->current, l->periods);
     c->factor[k] = mean_of(l->factor, l->periods);
-    c->voltage[k] = mean_of(l->command, l->periods);
+    c->stayed = c->stayed && qc_abs_sat(c->factor[k]) >= FACTOR_LEAST_Q20;
+    c->voltage[k] = for_fit(qc_add_sat(mean_of(l->command, l->periods), sag_q20(l)));
   }
   return true;
 }
 
-// Voltage missing in the model, from the windows, once the resistance is known.
-static bool window_columns(const staircase_t* s, const machine_model_t* m, int32_t resistance_q24, columns_t* c) {
+// What the command has and the windows have not: the resistance is in both, whatever it is.
+static void edge_column(const staircase_t* s, const machine_model_t* m, columns_t* c) {
   for (uint16_t k = 0; k < STAIRCASE_LEVELS; k++) {
     const staircase_level_t* const l = &s->level[k];
-    if (l->windows == 0) return false;
-    c->current[k] = mean_of(l->window_current, l->windows);
-    c->factor[k] = mean_of(l->window_factor, l->windows);
-    const int32_t sag_q20 = q_div(fit_ratio(l->sag, l->periods, 0), l->link_q16, 24);
-    const int32_t missing_q20 = qc_sub_sat(sag_q20, q_div(fit_ratio(l->residual, l->windows, 0), m->yd_q30, 30));
-    const int32_t known_q20 = qc_mul_sat(qc_sub_sat(resistance_q24, m->rs_q24), c->current[k], 24);
-    c->voltage[k] = for_fit(qc_sub_sat(missing_q20, known_q20));
+    const int32_t missing_q20 = qc_sub_sat(2 * sag_q20(l), q_div(fit_ratio(l->residual, l->windows, 0), m->yd_q30, 30));
+    const int32_t seen_q20 = qc_add_sat(missing_q20, qc_mul_sat(m->rs_q24, c->current[k], 24));
+    c->voltage[k] = for_fit(qc_sub_sat(c->voltage[k], seen_q20));
   }
-  return true;
-}
-
-// A shaft that stays where it was taken to has no phase near zero, and a volt of drop is 4/3 V along d at every level.
-static bool stayed(const columns_t* c) {
-  for (uint16_t k = 0; k < STAIRCASE_LEVELS; k++) {
-    if (qc_abs_sat(c->factor[k]) < FACTOR_LEAST_Q20) return false;
-  }
-  return true;
 }
 
 staircase_values_t staircase_solve(const staircase_t* s, const machine_model_t* m) {
@@ -63,21 +59,18 @@ staircase_values_t staircase_solve(const staircase_t* s, const machine_model_t* 
   if (!command_columns(s, &c)) return v;
   if (!fit_plane(c.current, c.factor, c.voltage, STAIRCASE_LEVELS, &plane)) return v;
   v.resistance_q24 = plane.slope_q24;
-  const bool held = stayed(&c);
-  v.command_rms_q16 = held ? plane.rms / 16 : INT32_MAX;
-  if (!window_columns(s, m, v.resistance_q24, &c)) return v;
+  v.command_rms_q16 = c.stayed ? plane.rms / 16 : INT32_MAX;
+  edge_column(s, m, &c);
   const int64_t square = fit_dot(c.factor, c.factor, STAIRCASE_LEVELS);
-  v.drop_error_q16 = fit_ratio(fit_dot(c.factor, c.voltage, STAIRCASE_LEVELS), square, 16);
-  v.edge_error_q16 = qc_sub_sat(plane.offset_q24 / 256, v.drop_error_q16);
-  int64_t link = 0;
+  v.edge_error_q16 = fit_ratio(fit_dot(c.factor, c.voltage, STAIRCASE_LEVELS), square, 16);
+  v.drop_error_q16 = qc_sub_sat(plane.offset_q24 / 256, v.edge_error_q16);
   int64_t rest = 0;
   for (uint16_t k = 0; k < STAIRCASE_LEVELS; k++) {
-    const int32_t left = for_fit(qc_sub_sat(c.voltage[k] / 16, qc_mul_sat(v.drop_error_q16, c.factor[k], 20)));
+    const int32_t left = for_fit(qc_sub_sat(c.voltage[k] / 16, qc_mul_sat(v.edge_error_q16, c.factor[k], 20)));
     rest += (int64_t)left * left;
-    link += s->level[k].link_q16;
   }
-  v.window_rms_q16 = held ? (int32_t)q_sqrt64((uint64_t)rest / STAIRCASE_LEVELS) : INT32_MAX;
-  v.link_q16 = fit_ratio(link, STAIRCASE_LEVELS, 0);
+  v.window_rms_q16 = c.stayed ? (int32_t)q_sqrt64((uint64_t)rest / STAIRCASE_LEVELS) : INT32_MAX;
+  v.link_q16 = s->level[0].link_q16;
   v.valid = true;
   return v;
 }
@@ -206,7 +199,7 @@ static int32_t inertia_q24(const spin_ramp_t* r, const steady_t* low, const stea
 }
 
 spin_values_t spin_solve(const spin_t* s, int32_t resistance_q24, int32_t ld_q30, int32_t pole_pairs) {
-  spin_values_t v = {false, 0, 0, 0, 0, 0};
+  spin_values_t v = {false, 0, 0, 0, 0, 0, 0};
   for (uint16_t k = 0; k < SPIN_STATIONS; k++) {
     if (s->station[k].periods == 0) return v;
   }
@@ -225,6 +218,7 @@ spin_values_t spin_solve(const spin_t* s, int32_t resistance_q24, int32_t ld_q30
   v.inertia_up_q24 = inertia_q24(&s->ramp[0], &low, &high, change, torque_constant_q24, pole_pairs);
   v.inertia_down_q24 =
       inertia_q24(&s->ramp[1], &end, &high, qc_sub_sat(end.speed, high.speed), torque_constant_q24, pole_pairs);
+  v.inertia_q24 = v.inertia_up_q24 / 2 + v.inertia_down_q24 / 2;
   v.valid = true;
   return v;
 }

@@ -12,7 +12,7 @@ typedef struct {
   int32_t drop_error_q16;                   // true device drop less the assumed one, V
   int32_t edge_error_q16;                   // voltage lost at the edges beyond what the assumed delays explain, V
   int32_t command_rms_q16, window_rms_q16;  // what the two fits leave over, V; beyond all bounds when the shaft moved
-  int32_t link_q16;                         // mean DC link, V
+  int32_t link_q16;                         // DC link, V
 } staircase_values_t;
 
 /// Inductances in mH, Q20.
@@ -30,6 +30,7 @@ typedef struct {
   int32_t flux_low_q28;                      // from the low speed alone: what offsets are worth
   int32_t friction_q24;                      // N m s
   int32_t inertia_up_q24, inertia_down_q24;  // kg m^2
+  int32_t inertia_q24;                       // their mean
 } spin_values_t;
 
 /// m: the model whose slopes were taken off; its resistance includes the devices'.

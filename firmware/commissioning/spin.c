@@ -2,7 +2,9 @@
 //
 // Steady low, ramp up, steady high, ramp down, steady low again, stop. The differences between the steady speeds are
 // free of what does not turn: drops, dead time, offsets. The ramps begin and end at steady speed, so that lags of the
-// estimators do not count: inertia is the momentum that went in, less friction, over the change of speed.
+// estimators do not count: inertia is the momentum that went in, less friction, over the change of speed. A speed is
+// what the angle has turned by in that time: the observer's own is off by what it corrects the angle by, period after
+// period.
 
 #include "firmware/base/clear.h"
 #include "firmware/commissioning/phases.h"
@@ -14,30 +16,24 @@
 #include "hal/qmath/qcall.h"
 
 #define SETTLE_PERIODS 4000
-#define STATION_PERIODS 10000
+#define LEG_PERIODS 14000  // of which the last are a station
 #define STILL_PERIODS 3000
 #define RAMP_MS 300  // for the whole speed
 
 typedef enum { LEG_FIRST = 0, LEG_UP = 1, LEG_DOWN = 2, LEG_STOP = 3 } leg_t;
 
-static void add_station(const drive_t* d, spin_station_t* s) {
-  q_gather(&s->speed, d->position.selected.speed_bpp);
+static void add_station(const drive_t* d, spin_station_t* s, int32_t turned_bam) {
+  q_gather(&s->speed, turned_bam);
   q_gather(&s->voltage_q, d->control.command_q16.q);
   q_gather(&s->current_q, d->control.measured_q20.q);
   q_gather(&s->current_d, d->control.measured_q20.d);
   s->periods = qc_add_sat(s->periods, 1);
 }
 
-static void add_ramp(const drive_t* d, spin_ramp_t* s) {
-  q_gather(&s->speed, d->position.selected.speed_bpp);
+static void add_ramp(const drive_t* d, spin_ramp_t* s, int32_t turned_bam) {
+  q_gather(&s->speed, turned_bam);
   q_gather(&s->current_q, d->control.measured_q20.q);
   s->periods = qc_add_sat(s->periods, 1);
-}
-
-static int32_t target_rpm_q16(uint16_t leg) {
-  const int32_t high_q16 = qc_shl_sat(q_min(drive.config.values.spin_speed, drive.config.values.speed_limit), 8);
-  if (leg == (uint16_t)LEG_STOP) return 0;
-  return (leg == (uint16_t)LEG_UP) ? high_q16 : high_q16 / 3;
 }
 
 // What shows no axis at rest is turned by a current vector first, and comes back with its speed.
@@ -63,8 +59,10 @@ static void begin(drive_t* d) {
 // Once in a millisecond: moves the speed reference towards the leg's; true when it is there. The drive's own ramp may
 // be slower still.
 static bool approach(drive_t* d) {
-  const int32_t high = qc_mul_sat(target_rpm_q16((uint16_t)LEG_UP), d->config.bpp_per_rpm_q8, 24);
-  const int32_t goal = qc_mul_sat(target_rpm_q16(commissioning.spin.leg), d->config.bpp_per_rpm_q8, 24);
+  const int32_t most_q8 = q_min(d->config.values.spin_speed, d->config.values.speed_limit);
+  const int32_t high = qc_mul_sat(most_q8, d->config.bpp_per_rpm_q8, 16);
+  const uint16_t leg = commissioning.spin.leg;
+  const int32_t goal = (leg == (uint16_t)LEG_UP) ? high : (leg == (uint16_t)LEG_STOP) ? 0 : high / 3;
   const int32_t step = high / RAMP_MS;
   int32_t* const target = &d->control.target_bpp;
   *target = q_clamp(goal, qc_sub_sat(*target, step), qc_add_sat(*target, step));
@@ -114,11 +112,16 @@ bool commissioning_spin(drive_t* d) {
     if (s->tick > STILL_PERIODS && start_has_exclusive_slot(d)) (void)hand_back(d);
     return false;
   }
+  const int32_t turned_bam = angle_diff_bam(d->position.selected.angle_bam, s->angle_bam);
+  s->angle_bam = d->position.selected.angle_bam;
   const bool settling = s->tick < SETTLE_PERIODS;
-  if (settling && s->leg != (uint16_t)LEG_FIRST) add_ramp(d, &s->ramp[s->leg - 1u]);
-  if (!settling) add_station(d, &s->station[s->leg]);
-  s->tick = qc_add_sat(s->tick, s->arrived ? 1 : 0);
-  if (s->tick < SETTLE_PERIODS + STATION_PERIODS) return false;
+  if (settling && s->leg != (uint16_t)LEG_FIRST) add_ramp(d, &s->ramp[s->leg - 1u], turned_bam);
+  if (!settling) add_station(d, &s->station[s->leg], turned_bam);
+  // Passing zero, it has come round.
+  const bool waits =
+      (s->tick == SETTLE_PERIODS - 1 || s->tick == LEG_PERIODS - 1) && s->angle_bam >= (uint32_t)turned_bam;
+  s->tick = qc_add_sat(s->tick, (s->arrived && !waits) ? 1 : 0);
+  if (s->tick < LEG_PERIODS) return false;
   s->leg++;
   s->tick = 0;
   s->arrived = false;

@@ -5,17 +5,18 @@
 //   the voltage command:  v = R i + (drop error + dead-time error * Vdc / T) F     because the command passes the edges
 //   the windows:          -residual / Yd = (R - R model) i + (drop error) F        because they see no edge
 // "Error" is what is missing in the drive's own compensation (svpwm/dead_time.h), whose form is thus the form of the
-// fit. The command's mean is quiet: it gives R. The windows' mean is noisy but free of the edges: it gives the drop.
+// fit. The command's mean is quiet: it gives R, and drop and edges together. The difference of the two gives the edges,
+// noisier, because the windows are, but with no resistance in it.
 // The pair of windows is under opposite vectors, so the mean link voltage and the error of Yd fall out of the sum. What
 // does not is the link's sag: it falls under one vector and rises under the other, and a window is not in the middle of
 // its vector. The link samples at the ends of the two windows tell by how much.
 //
-// Levels: seven from 40 % to the whole current limit, but from where the ripple changes no current's sign on (a phase
-// has at least half of i_d, so that is twice the ripple and a fifth to spare). First with i_d > 0, not beyond half of
-// where the reluctance takes all of the magnet's torque, lambda/(Lq - Ld), for i_q has to hold the shaft; then with
-// i_d < 0, not beyond the field-weakening limit, for the magnets' sake; and neither beyond what a level may last
-// without an overload: with the machine cool, a quarter of what the overload's time constant bears. A sign that the
-// ripple leaves no room takes the levels of the other: one side has the drop in another place than the resistance, too.
+// Levels: from 40 % to the whole current limit, but from where the ripple changes no current's sign on (a phase has at
+// least half of i_d, so that is twice the ripple and a fifth to spare), to where the voltage leaves the pulses opposite
+// windows, and not beyond what a level may last without an overload: with the machine cool, a quarter of what the
+// overload's time constant bears. They have i_d > 0, which pulls the rotor to where it is held, up to half of where the
+// reluctance takes all of the magnet's torque, lambda/(Lq - Ld), for i_q has to hold the shaft. Only where that leaves
+// no room they have i_d < 0, which pushes the rotor away, up to the field-weakening limit, for the magnets' sake.
 // Resistance of winding and of devices cannot be told apart this way: the devices' is kept as it was given.
 
 #include "firmware/base/clear.h"
@@ -26,7 +27,6 @@
 #include "firmware/mode/mode.h"
 #include "hal/qmath/qcall.h"
 
-#define SIDE (STAIRCASE_LEVELS / 2u)
 #define SETTLE_PERIODS 600
 #define TURN_PERIODS 6u  // in which the excitation comes round
 #define TURNS 3u
@@ -52,27 +52,32 @@ static int32_t held_q20(void) {
   return q_div(m->flux_q28, q_max(m->lq_q30 - m->ld_q30, 1), 21);
 }
 
+// Where R i takes a quarter of what the link gives in a pulse. Beyond, the shorter of two pulses is about as short as
+// what it differs by from the other.
+static int32_t opposite_q20(const drive_t* d) {
+  const int32_t volts_q16 = d->samples.link_q16 / 400 * (d->config.modulator.pulse_ticks / 100);
+  return q_div(volts_q16, commissioning.model.rs_q24, 28);
+}
+
 // Where there is room for a line. sign: -1 or 1.
-static uint16_t place_half(const drive_t* d, staircase_half_t* half, int32_t sign, int32_t most) {
+static bool place_levels(const drive_t* d, int32_t sign, int32_t most) {
+  staircase_t* const s = &commissioning.staircase;
   const int32_t least = q_max(most / 10 * 4, ripple_q20(d) / 10 * 24);
-  if (most <= 0 || least > most / 4 * 3) return 0;
-  half->first_q20 = sign * least;
-  half->step_q20 = sign * ((most - least) / (int32_t)(SIDE - 1u));
-  return 1;
+  if (least > most / 4 * 3) return false;
+  s->level_q20 = sign * least;
+  s->step_q20 = sign * ((most - least) / (int32_t)(STAIRCASE_LEVELS - 1u));
+  return true;
 }
 
 // With no room on either side there are no levels, and nothing will be found.
-static void place_levels(const drive_t* d, staircase_half_t half[2]) {
-  const int32_t limit = bearable_q20();
-  clear(half, 2u * sizeof *half);
-  const uint16_t above = place_half(d, &half[0], 1, commissioning.uniform ? limit : q_min(limit, held_q20()));
-  const uint16_t below = place_half(d, &half[1], -1, q_min(d->config.values.weakening_limit, limit));
-  half[above] = half[below];  // of one with room and one without
-}
-
-static int32_t level_q20(const staircase_t* s) {
-  const staircase_half_t* const h = &s->half[s->index / SIDE];
-  return h->first_q20 + h->step_q20 * (int32_t)(s->index % SIDE);
+static void place(const drive_t* d) {
+  staircase_t* const s = &commissioning.staircase;
+  const int32_t limit = q_min(bearable_q20(), opposite_q20(d));
+  s->level_q20 = 0;
+  s->step_q20 = 0;
+  if (!place_levels(d, 1, q_min(limit, held_q20()))) {
+    (void)place_levels(d, -1, q_min(limit, d->config.values.weakening_limit));
+  }
 }
 
 // What one volt of drop in every phase gives along the d-axis, Q20.
@@ -105,11 +110,8 @@ static void add_sag(const drive_t* d, staircase_level_t* l, rotation_t r) {
   q_gather(&l->sag, qc_mul_sat(qc_mul(at_ends_q16, share_q15, 15), frame_park(quarter_q16, r).d, 20));
 }
 
-static void add_window(const drive_t* d, staircase_level_t* l, rotation_t r, uint16_t k) {
-  const deviation_t w = commissioning_window(d, k);
-  q_gather(&l->window_current, w.current_q20.d);
-  q_gather(&l->window_factor, factor_q20(d->samples.windows[k].current_q20, r));
-  q_gather(&l->residual, w.residual_q20.d);
+static void add_window(const drive_t* d, staircase_level_t* l, uint16_t k) {
+  q_gather(&l->residual, commissioning_window(d, k).residual_q20.d);
   l->windows = qc_add_sat(l->windows, 1);
 }
 
@@ -119,12 +121,12 @@ static void add_one(const drive_t* d, staircase_t* s) {
   staircase_level_t* const l = &s->level[s->index];
   s->turn = (s->turn + 1u < TURNS * TURN_PERIODS) ? (uint16_t)(s->turn + 1u) : 0u;
   if (!commissioning_has_pair(d)) return;
-  const rotation_t r = frame_rotation(d->position.selected.angle_bam);
   if (s->turn < TURN_PERIODS) {
+    const rotation_t r = frame_rotation(d->position.selected.angle_bam);
     add_period(d, l, r);
     add_sag(d, l, r);
   } else {
-    add_window(d, l, r, (uint16_t)(s->turn / TURN_PERIODS - 1u));
+    add_window(d, l, (uint16_t)(s->turn / TURN_PERIODS - 1u));
   }
 }
 
@@ -135,7 +137,7 @@ bool commissioning_climb(drive_t* d) {
     s->index = 0;
     s->turn = 0;
     s->tick = 0;
-    place_levels(d, s->half);
+    place(d);
     s->one_volt = d->config.dead_time;
     s->one_volt.drop_q16 = 65536L;
     dead_time_design(&s->one_volt);
@@ -154,13 +156,14 @@ bool commissioning_climb(drive_t* d) {
     commissioning_set_d(d, 0);
     return false;
   }
-  commissioning_set_d(d, level_q20(s));
+  commissioning_set_d(d, s->level_q20);
   staircase_level_t* const l = &s->level[s->index];
   if (s->tick == 0) clear(l, sizeof *l);
   s->tick = qc_add_sat(s->tick, 1);
   if (s->tick > SETTLE_PERIODS) add_one(d, s);
   if (s->tick < SETTLE_PERIODS + LEVEL_PERIODS) return false;
   l->link_q16 = d->samples.link_q16;
+  s->level_q20 += s->step_q20;
   s->index++;
   s->tick = 0;
   return false;

@@ -135,28 +135,38 @@ TEST(CommissioningMap, SmoothingForgivesATenthOfTheLargest) {
   }
 }
 
-// What is missing under the windows is what they leave over and the link's sag between them; both fits say how far the
-// levels lie off them.
-TEST(CommissioningStaircase, TheSagOfTheLinkIsNoDrop) {
+// Both fits say how far the levels lie off them, the windows' beside the command.
+TEST(CommissioningStaircase, LevelsThatLieOffAreNoLine) {
   const machine_model_t m = nameplate();
   staircase_t s = climbed(m, 0.387, 0.5, -1.2);
-  for (staircase_level_t& l : s.level) {
-    l.sag = 4200LL * raw(-0.06 * 300.0, 12);
-    l.residual -= 8400LL * raw(0.06 * real(m.yd_q30, 30), 20);
-  }
   staircase_values_t v = staircase_solve(&s, &m);
-  EXPECT_NEAR(real(v.drop_error_q16, 16), 0.5, 5e-4);
-  EXPECT_NEAR(real(v.edge_error_q16, 16), -1.2, 5e-4);
   EXPECT_LT(real(v.window_rms_q16, 16), 1e-3);
   const double off = 0.1;  // the same at both signs of a current: no line and no drop explains it
-  for (int k = 0; k < 14; ++k) {
-    const double side = (k % 7) % 2 == 0 ? off : -off;
-    s.level[k].sag += 4200LL * raw(side * 300.0, 12);
-    s.level[k].command += 4200LL * raw(side, 20);
-  }
+  const auto side = [off](int k) { return (k % 7) % 2 == 0 ? off : -off; };
+  for (int k = 0; k < 14; ++k) s.level[k].residual -= 8400LL * raw(side(k) * real(m.yd_q30, 30), 20);
   v = staircase_solve(&s, &m);
-  EXPECT_NEAR(real(v.window_rms_q16, 16), off, 1e-3 * off);
-  EXPECT_NEAR(real(v.command_rms_q16, 16), off, 1e-3 * off);
+  EXPECT_NEAR(real(v.window_rms_q16, 16), off, 1e-2 * off);
+  EXPECT_LT(real(v.command_rms_q16, 16), 1e-2 * off);
+  for (int k = 0; k < 14; ++k) s.level[k].command += 4200LL * raw(side(k), 20);
+  v = staircase_solve(&s, &m);
+  EXPECT_NEAR(real(v.command_rms_q16, 16), off, 1e-2 * off);
+  EXPECT_LT(real(v.window_rms_q16, 16), 1e-2 * off) << "both scatter alike";
+}
+
+// A link that gives way in proportion to the current is no resistance of the machine: the mean is missing what the
+// windows are, and what is taken for a drop is the same as without.
+TEST(CommissioningStaircase, TheSagOfTheLinkIsNoResistance) {
+  const machine_model_t m = nameplate();
+  const double slope = 0.04;  // V per A, of one vector against the other
+  staircase_t s = climbed(m, 0.387 + slope, 0.5, -1.2);
+  for (staircase_level_t& l : s.level) {
+    l.sag = -4200LL * raw(slope * 300.0 * real(l.current / 4200, 20), 12);
+    l.residual -= l.windows * raw(slope * real(l.current / 4200, 20) * real(m.yd_q30, 30), 20);
+  }
+  const staircase_values_t v = staircase_solve(&s, &m);
+  EXPECT_NEAR(real(v.resistance_q24, 24), 0.387, 1e-4);
+  EXPECT_NEAR(real(v.drop_error_q16, 16), 0.5, 2e-3);
+  EXPECT_NEAR(real(v.edge_error_q16, 16), -1.2, 2e-3);
 }
 
 // Drops that grow with the current like a resistance cannot be told from one.

@@ -34,9 +34,15 @@ class CommissioningStairs : public Drive {
     (void)commissioning_climb(&drive);
     commissioning.tick = 1;
   }
-  static double level(int index) {
-    const staircase_half_t& h = stairs().half[index / 7];
-    return real(h.first_q20 + h.step_q20 * (index % 7), 20);
+  static double level(int index) { return real(stairs().level_q20 + stairs().step_q20 * index, 20); }
+  static double ripple() {
+    const double pulse = inside::config().modulator.pulse_ticks / 1e4;
+    return real(inside::link_q16(), 16) * 2.0 / 3.0 * real(commissioning.model.yd_q30, 30) * pulse;
+  }
+  /// Above lambda / (Lq - Ld), A, the reluctance turns the torque's sign.
+  static void turns_at(double current) {
+    machine_model_t& m = commissioning.model;
+    m.lq_q30 = m.ld_q30 + raw(real(m.flux_q28, 28) / current, 30);
   }
 };
 
@@ -106,12 +112,12 @@ TEST_F(CommissioningStairs, ALevelIsNoOverload) {
     parameters.overload_time = static_cast<std::int32_t>(1000.0 * seconds);
     use_parameters();
     begin();
-    EXPECT_NEAR(level(6), most, 0.01 * most) << seconds;
+    EXPECT_NEAR(level(13), most, 0.01 * most) << seconds;
   }
   parameters.overload_current = 0;
   use_parameters();
   begin();
-  EXPECT_NEAR(level(6), 14.0, 1e-3);
+  EXPECT_NEAR(level(13), 14.0, 1e-3);
 }
 
 // At rest the pairs wait for the period that makes the torque constant.
@@ -224,46 +230,42 @@ TEST_F(CommissioningStairs, ResultsAreThereWhenItHasEnded) {
   EXPECT_EQ(drive_commissioning_result(0).id, 0);
 }
 
-// Up to the limit and down to the weakening limit, seven each.
-TEST_F(CommissioningStairs, TheLevelsLieOnBothSides) {
-  for (const int k : {0, 3, 6}) {
-    EXPECT_NEAR(level(k), 14.0 * (0.4 + 0.1 * k), 1e-3) << k;
-    EXPECT_NEAR(level(7 + k), -12.0 * (0.4 + 0.1 * k), 1e-3) << k;
+// Where the rotor is pulled to the frame, up to the limit, whether it shows an axis or not.
+TEST_F(CommissioningStairs, TheLevelsPullTheRotor) {
+  for (const bool uniform : {false, true}) {
+    commissioning.uniform = uniform;
+    begin();
+    for (const int k : {0, 6, 13}) EXPECT_NEAR(level(k), 14.0 * (0.4 + 0.6 / 13.0 * k), 1e-3) << k;
   }
 }
 
 // With i_d > 0 the reluctance turns the torque's sign at lambda / (Lq - Ld): the levels end at half of that, and where
-// this leaves no room all of them are those of i_d < 0.
+// this leaves no room they are below zero, as far as the magnets bear it. With no room there either there are none.
 TEST_F(CommissioningStairs, TheReluctanceKeepsTheLevelsWhereTheShaftIsHeld) {
-  const double flux = real(commissioning.model.flux_q28, 28);
   for (const auto& [end, most] : {std::pair{40.0, 14.0}, {16.0, 8.0}, {6.0, -12.0}}) {
-    commissioning.model.lq_q30 = commissioning.model.ld_q30 + raw(flux / end, 30);
+    turns_at(end);
     begin();
-    EXPECT_NEAR(level(6), most, 0.01) << end;
-    EXPECT_NEAR(level(13), -12.0, 0.01);
+    EXPECT_NEAR(level(13), most, 0.01) << end;
+    EXPECT_NEAR(level(0), std::copysign(std::max(0.4 * std::fabs(most), 2.4 * ripple()), most), 0.01) << end;
+  }
+  for (const double most : {9.0, 0.0}) {
+    inside::config().values.weakening_limit = raw(most, 20);
+    begin();
+    EXPECT_NEAR(level(13), -most, 0.01);
   }
 }
 
-// What the ripple leaves no room with i_d < 0, for the weakening limit is lower, has it with i_d > 0.
-TEST_F(CommissioningStairs, ASideWithoutRoomTakesTheLevelsOfTheOther) {
-  inside::config().values.weakening_limit = raw(4.0, 20);
-  commissioning.model.yd_q30 *= 2;
+// Beyond what the voltage of the resistance leaves of the shorter pulse a period has no two opposite windows.
+TEST_F(CommissioningStairs, TheLevelsEndWhereThePulsesAreNoLongerOpposite) {
+  const double limit = 10.0;
+  const double share = real(commissioning.model.yd_q30, 30);  // T / L
+  commissioning.model.rs_q24 = raw(3.0 / 8.0 * ripple() / share / limit, 24);
   begin();
-  EXPECT_GT(level(0), 7.0);
-  for (int k = 0; k < 7; ++k) EXPECT_EQ(level(7 + k), level(k));
-}
-
-// A rotor that is not held turns to where the current points, but need not: nor are its magnets weakened further.
-TEST_F(CommissioningStairs, NoRotorIsWeakenedBeyondItsLimit) {
-  for (const bool uniform : {false, true}) {
-    commissioning.uniform = uniform;
-    for (const double most : {12.0, 9.0, 0.0}) {
-      inside::config().values.weakening_limit = raw(most, 20);
-      begin();
-      EXPECT_NEAR(level(6), 14.0, 1e-3) << most;
-      EXPECT_NEAR(level(13), most > 0.0 ? -most : 14.0, 1e-3) << most << ": none takes the levels of the other";
-    }
-  }
+  EXPECT_NEAR(level(13), limit, 0.01);
+  // With a pulse p and R i on one phase the others' common part lasts p less 3/2 R i T / U, and that is longer.
+  const double pulse = inside::config().modulator.pulse_ticks / 1e4;
+  const double apart = 1.5 * real(commissioning.model.rs_q24, 24) * limit / real(inside::link_q16(), 16);
+  EXPECT_NEAR(apart / (pulse - apart), 3.0 / 5.0, 0.01);
 }
 
 TEST_F(CommissioningStairs, TheBackgroundLevelJudgesALevelOfTheMap) {

@@ -63,8 +63,6 @@ inline staircase_t climbed(const machine_model_t& m, double resistance, double d
     l.current = 4200LL * raw(i, 20);
     l.factor = 4200LL * raw(f, 20);
     l.command = 4200LL * raw(resistance * i + (drop_error + edge_error) * f, 20);
-    l.window_current = 8400LL * raw(i, 20);
-    l.window_factor = 8400LL * raw(f, 20);
     const double missing = (resistance - real(m.rs_q24, 24)) * i + drop_error * f;
     l.residual = 8400LL * raw(-missing * real(m.yd_q30, 30), 20);
     l.link_q16 = raw(300.0, 16);

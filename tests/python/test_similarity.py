@@ -222,6 +222,30 @@ def test_the_estimator_of_a_start_is_faster_where_the_shaft_is(native):
         assert times(native, name, inertia=0.00455 / 4, inductance_q=4.9e-3) == 1.0
 
 
+def test_the_estimator_of_a_start_is_slower_where_its_loop_over_the_turn_of_the_axis_closes(native):
+    """The loop goes by the inertia; a shaft eight times as heavy would have eight times the reference's."""
+    for name in ("avv_bandwidth_long", "avv_bandwidth_short"):
+        assert times(native, name, inertia=0.00455 * 8) == 0.5
+        assert times(native, name, inertia=0.00455 * 32) == 0.25
+        assert times(native, name, inertia=0.00455 * 8, inductance_q=4.9e-3) == 1.0
+
+
+def test_the_band_of_the_drops_is_narrower_where_the_ripple_is_less(native):
+    for factor, expected in ((4.0, 0.25), (2.0, 0.5), (1.1, 1.0), (0.25, 1.0)):
+        changes = {"inductance_d": 4.9e-3 * factor, "inductance_q": 7.8e-3 * factor}
+        assert times(native, "drop_band", **changes) == expected
+    assert times(native, "drop_band", current_range=80.0) == 1.0  # of the board's size, which is four times as large
+
+
+def test_the_spin_shows_an_emf_beside_what_the_devices_leave(native):
+    """Of a weak magnet: a sixteenth of the link's voltage at least."""
+    for flux, expected in ((0.08, 1.0), (0.06, 2.0), (0.035, 4.0)):
+        assert times(native, "spin_speed", magnet_flux=flux, inductance_q=20e-3) >= expected / 2.0
+        told = followed(native, magnet_flux=flux, inductance_q=20e-3).get("spin_speed", 600.0)
+        assert 4 * flux * told * math.pi / 30.0 >= 0.062 * 300.0
+    assert followed(native, {"speed_limit": 700.0}, magnet_flux=0.02)["spin_speed"] == 700.0
+
+
 def test_the_current_loop_is_faster_than_what_swings_by_itself(native):
     light = dataclasses.replace(similarity.REFERENCE, inertia=0.00455 / 50.0)
     told = {"polarity_current": 0.1}  # a usual segment

@@ -23,6 +23,8 @@ SEGMENT, SEGMENT_LONGEST = 40, 160
 TURN_LEAST, TURN_MOST = math.radians(1.5), math.radians(10.0)
 _SPEED_PERIOD = 1e-3  # s
 _FOLLOW_MOST = 2.0  # times as much as the reference
+_TURN_MOST = 4.0  # the same of AVV's
+_SPIN_LEAST = 0.43  # of the speed up to which the pulses alternate
 _SWING = 2.1  # the current loop over the frequency at which EMF, inductance and inertia swing
 _SWING_TESTED = 2.8  # where a segment of the polarity test is the shortest
 _LOOP_END = 10400.0  # rad/s times three half periods and the divider's (firmware/config/rules.c)
@@ -84,6 +86,11 @@ class Size:
     def sharpness(self) -> float:
         """What the position changes in a window's current, over the noise of the sensors, which goes by their range."""
         return self.volts * self.saliency / self.current_range
+
+    @property
+    def ripple(self) -> float:
+        """A/s, the mean of both axes, by the link's voltage."""
+        return self.volts * (1.0 / self.inductance_d + 1.0 / self.inductance_q) / 2.0
 
     @property
     def noise_volts(self) -> float:
@@ -218,9 +225,16 @@ def _up_to_top_speed(asked: _Asked, name: str) -> float:
 
 
 def _spin(asked: _Asked, name: str) -> float:
-    """No faster than the pulses alternate: beyond, the mean of the currents is off by a share of the ripple."""
-    size = asked.size
-    return min(_up_to_top_speed(asked, name), open_loop.spin_most(size.volts, size.magnet_flux, size.pole_pairs))
+    """Where the EMF is a sixteenth of the link's voltage at least, and no faster than the pulses alternate.
+
+    Less is little beside what the devices leave of their dead time while no current flows; beyond, the mean of the
+    currents is off by a share of the ripple.
+    """
+    size, found = asked.size, _up_to_top_speed(asked, name)
+    most = open_loop.spin_most(size.volts, size.magnet_flux, size.pole_pairs)
+    while found < most * _SPIN_LEAST:
+        found *= 2.0
+    return min(found, most, asked.told.get("speed_limit", found))
 
 
 def _ramp(asked: _Asked, name: str) -> float:
@@ -252,12 +266,17 @@ def _speed_alpha(asked: _Asked, name: str) -> float:
 
 
 def _by_agility(asked: _Asked, name: str) -> float:
-    """As much faster as a current off the q-axis moves the shaft sooner; the default where there is no saliency."""
+    """As much faster as a current off the q-axis moves the shaft sooner; the default where there is no saliency.
+
+    The axis turns with the current before commissioning has measured it: the slower a current moves the shaft, the more
+    current answers to such a turn.
+    """
     size, default = asked.size, asked.default(name)
     if open_loop.share(size.inductance_d, size.inductance_q) < open_loop.SALIENCY_LEAST:
         return default
     ratio = size.pole_pairs * size.acceleration / (REFERENCE.pole_pairs * REFERENCE.acceleration)
-    return default * max(_power(math.sqrt(ratio)), 1.0)
+    faster = max(_power(math.sqrt(ratio)), 1.0)
+    return default * _halved(faster, lambda faster: faster * faster <= _TURN_MOST * ratio)
 
 
 def _current_bandwidth(asked: _Asked, name: str) -> float:
@@ -266,6 +285,13 @@ def _current_bandwidth(asked: _Asked, name: str) -> float:
     tested = asked.told.get("polarity_current", _polarity_current(asked, "polarity_current"))
     times = _SWING_TESTED if size.saliency > 0.0 and size.segment(tested) < SEGMENT else _SWING
     return max(asked.default(name), min(math.ceil(times * size.swing), most))
+
+
+def _drop_band(asked: _Asked, name: str) -> float:
+    """A smaller share of the board's range where the ripple is: within the band no dead time is told from a current."""
+    default = float(asked.known[name].default)
+    ratio = asked.default(name) * asked.size.ripple / REFERENCE.ripple / default
+    return default * min(_power(ratio), 1.0)
 
 
 def _synchronism_floor(asked: _Asked, name: str) -> float:
@@ -283,6 +309,7 @@ RULES: dict[str, _Law] = {
     "polarity_current": _polarity_current,
     **dict.fromkeys(("observer_load_rate", "observer_load_quiet", "observer_load_step"), _load),
     **dict.fromkeys(("avv_bandwidth_long", "avv_bandwidth_short"), _by_agility),
+    "drop_band": _drop_band,
     "speed_ramp": _ramp,
     "if_acceleration": _if_ramp,
     "speed_alpha": _speed_alpha,
