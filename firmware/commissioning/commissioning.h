@@ -70,21 +70,15 @@ typedef struct {
   int32_t position_bam;
 } map_t;
 
-/// Sums at a steady speed.
+/// At a steady speed, or between two of them.
 typedef struct {
   int64_t speed, voltage_q, current_q, current_d;
   int32_t periods;
-} spin_station_t;
-
-/// Between two stations.
-typedef struct {
-  int64_t speed, current_q;
-  int32_t periods;
-} spin_ramp_t;
+} spin_sums_t;
 
 typedef struct {
-  spin_station_t station[SPIN_STATIONS];
-  spin_ramp_t ramp[SPIN_RAMPS];
+  spin_sums_t station[SPIN_STATIONS];
+  spin_sums_t ramp[SPIN_RAMPS];
   bool begun, arrived;
   uint16_t leg;
   uint32_t angle_bam;  // of the last period

@@ -38,7 +38,7 @@ static int32_t holding_q20(const drive_t* d) {
 
 // A rotor that follows the current swings about it, and next to nothing brakes that: the current across goes against
 // the EMF that the voltage across shows, as if that axis were closed by 1/16 of L/T.
-static int32_t braking_q20(const drive_t* d) { return -qc_mul_sat(d->control.command_q16.q, d->model.yq_q30, 22); }
+static int32_t braking_q20(const drive_t* d) { return qc_mul_sat(-d->control.command_q16.q, d->model.yq_q30, 22); }
 
 // Braking has a low-pass of 64 periods, so that the current controller does not answer to itself.
 void commissioning_hold(drive_t* d) {
@@ -46,7 +46,7 @@ void commissioning_hold(drive_t* d) {
   const int32_t limit = d->config.values.current_limit / 4;
   const int32_t wanted = q_limit(uniform ? braking_q20(d) : holding_q20(d), limit);
   int32_t* const current = &d->control.references.current_q20.q;
-  *current = uniform ? *current + (wanted - *current) / 64 : wanted;
+  *current = uniform ? *current + q_shr(wanted - *current, 6) : wanted;
 }
 
 bool commissioning_align(drive_t* d) {

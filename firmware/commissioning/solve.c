@@ -25,7 +25,9 @@ static int32_t mean_of(int64_t sum, int32_t count) { return for_fit(fit_ratio(su
 
 // The link falls under the vector along the current and rises under its opposite. Next to all of a period is under
 // either: what the windows see of it is missing in the mean, too.
-static int32_t sag_q20(const staircase_level_t* l) { return q_div(fit_ratio(l->sag, l->periods, 0), l->link_q16, 24); }
+static int32_t sag_q20(const staircase_level_t* l) {
+  return for_fit(q_div(fit_ratio(l->sag, l->periods, 0), l->link_q16, 24));
+}
 
 // A shaft that stays where it was taken to has no phase near zero, and a volt of drop is 4/3 V along d at every level:
 // stayed.
@@ -37,7 +39,7 @@ static bool command_columns(const staircase_t* s, columns_t* c) {
     c->current[k] = mean_of(l->current, l->periods);
     c->factor[k] = mean_of(l->factor, l->periods);
     c->stayed = c->stayed && qc_abs_sat(c->factor[k]) >= FACTOR_LEAST_Q20;
-    c->voltage[k] = for_fit(qc_add_sat(mean_of(l->command, l->periods), sag_q20(l)));
+    c->voltage[k] = for_fit(mean_of(l->command, l->periods) + sag_q20(l));
   }
   return true;
 }
@@ -171,7 +173,7 @@ typedef struct {
 } steady_t;
 
 // The voltage without that of the d-axis current.
-static steady_t steady(const spin_station_t* s, int32_t ld_q30) {
+static steady_t steady(const spin_sums_t* s, int32_t ld_q30) {
   const int32_t flux_q28 = qc_mul_sat(ld_q30, fit_ratio(s->current_d, s->periods, 0), 22);
   const int32_t speed = fit_ratio(s->speed, s->periods, 0);
   const int32_t armature_q16 = fit_ratio((int64_t)flux_q28 * speed, BPP_PER_RAD_Q12, 0);
@@ -187,7 +189,7 @@ static int32_t emf_q16(const steady_t* s, int32_t resistance_q24) {
 static int32_t flux_q28(int32_t emf_q16, int32_t speed) { return fit_ratio(emf_q16 * BPP_PER_RAD_Q12, speed, 0); }
 
 // Inertia from a ramp between two steady speeds, friction taken off as it is at those speeds.
-static int32_t inertia_q24(const spin_ramp_t* r, const steady_t* low, const steady_t* high, int32_t change,
+static int32_t inertia_q24(const spin_sums_t* r, const steady_t* low, const steady_t* high, int32_t change,
                            int32_t torque_constant_q24, int32_t pole_pairs) {
   const int32_t mean_speed = fit_ratio(r->speed, r->periods, 0);
   const int32_t place_q24 = fit_ratio((int64_t)mean_speed - low->speed, (int64_t)high->speed - low->speed, 24);

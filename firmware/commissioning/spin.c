@@ -22,17 +22,11 @@
 
 typedef enum { LEG_FIRST = 0, LEG_UP = 1, LEG_DOWN = 2, LEG_STOP = 3 } leg_t;
 
-static void add_station(const drive_t* d, spin_station_t* s, int32_t turned_bam) {
+static void add_period(const drive_t* d, spin_sums_t* s, int32_t turned_bam) {
   q_gather(&s->speed, turned_bam);
   q_gather(&s->voltage_q, d->control.command_q16.q);
   q_gather(&s->current_q, d->control.measured_q20.q);
   q_gather(&s->current_d, d->control.measured_q20.d);
-  s->periods = qc_add_sat(s->periods, 1);
-}
-
-static void add_ramp(const drive_t* d, spin_ramp_t* s, int32_t turned_bam) {
-  q_gather(&s->speed, turned_bam);
-  q_gather(&s->current_q, d->control.measured_q20.q);
   s->periods = qc_add_sat(s->periods, 1);
 }
 
@@ -112,14 +106,16 @@ bool commissioning_spin(drive_t* d) {
     if (s->tick > STILL_PERIODS && start_has_exclusive_slot(d)) (void)hand_back(d);
     return false;
   }
-  const int32_t turned_bam = angle_diff_bam(d->position.selected.angle_bam, s->angle_bam);
+  const uint32_t before_bam = s->angle_bam;
   s->angle_bam = d->position.selected.angle_bam;
-  const bool settling = s->tick < SETTLE_PERIODS;
-  if (settling && s->leg != (uint16_t)LEG_FIRST) add_ramp(d, &s->ramp[s->leg - 1u], turned_bam);
-  if (!settling) add_station(d, &s->station[s->leg], turned_bam);
-  // Passing zero, it has come round.
-  const bool waits =
-      (s->tick == SETTLE_PERIODS - 1 || s->tick == LEG_PERIODS - 1) && s->angle_bam >= (uint32_t)turned_bam;
+  const int32_t turned_bam = angle_diff_bam(s->angle_bam, before_bam);
+  const bool steady = s->tick >= SETTLE_PERIODS;
+  if (steady || s->leg != (uint16_t)LEG_FIRST) {
+    add_period(d, steady ? &s->station[s->leg] : &s->ramp[s->leg - 1u], turned_bam);
+  }
+  // From the last quarter to the first, it has come round: noise may turn it back from one period to the next.
+  const bool round = before_bam >> 30 == 3u && s->angle_bam >> 30 == 0u;
+  const bool waits = (s->tick == SETTLE_PERIODS - 1 || s->tick == LEG_PERIODS - 1) && !round;
   s->tick = qc_add_sat(s->tick, (s->arrived && !waits) ? 1 : 0);
   if (s->tick < LEG_PERIODS) return false;
   s->leg++;

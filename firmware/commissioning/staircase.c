@@ -145,18 +145,16 @@ bool commissioning_climb(drive_t* d) {
     return false;
   }
   commissioning_hold(d);
-  if (s->index >= STAIRCASE_LEVELS) {
-    commissioning_set_d(d, 0);
+  const bool over = s->index >= STAIRCASE_LEVELS;
+  const bool rests = over || (s->tick == 0 && interlock_is_warm());
+  commissioning_set_d(d, rests ? 0 : s->level_q20);
+  if (over) {
     if (d->control.references.current_q20.d != 0) return false;
     s->tick = qc_add_sat(s->tick, 1);
     commissioning_add_still(d);
     return s->tick > SETTLE_PERIODS + 1;
   }
-  if (s->tick == 0 && interlock_is_warm()) {
-    commissioning_set_d(d, 0);
-    return false;
-  }
-  commissioning_set_d(d, s->level_q20);
+  if (rests) return false;
   staircase_level_t* const l = &s->level[s->index];
   if (s->tick == 0) clear(l, sizeof *l);
   s->tick = qc_add_sat(s->tick, 1);

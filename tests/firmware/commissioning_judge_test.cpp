@@ -182,7 +182,7 @@ TEST_F(CommissioningJudge, TheSpinMustAgreeWithItself) {
   }
   for (const auto& [volts, agrees] : {std::pair{1.1, true}, {1.4, false}, {-1.1, true}, {-1.4, false}}) {
     SetUp();  // a tenth of 12.4 V at the low speed, of which 0.3 are there already
-    for (spin_station_t& s : c.spin.station) s.voltage_q += 5000LL * raw(volts - 0.3, 16);
+    for (spin_sums_t& s : c.spin.station) s.voltage_q += 5000LL * raw(volts - 0.3, 16);
     EXPECT_EQ(verdict("magnet_flux") == VERDICT_USED, agrees) << volts;
   }
 }

@@ -159,8 +159,8 @@ TEST_F(Phases, TheStaircaseSumsEachLevel) {
   }
 }
 
-// The shaft follows its reference at once, and the observer's speed is 2 % off what the angle does: three stations of a
-// second and to the end of a turn, ramps between them, and a stop.
+// The shaft follows its reference at once, and the observer's speed is 2 % off what the angle does, which is noisier
+// than it turns in a period: three stations of a second and to the end of a turn, ramps between them, and a stop.
 TEST_F(Phases, TheSpinSumsStationsAndRamps) {
   std::memset(&commissioning.spin, 0x55, sizeof commissioning.spin);  // an earlier commissioning's
   inside::schedule().exclusive = true;
@@ -171,6 +171,7 @@ TEST_F(Phases, TheSpinSumsStationsAndRamps) {
   inside::reference_dq_q20().d = raw(1.0, 20);
   int n = 0;
   std::int32_t last = 0;
+  std::uint32_t turned = 0;
   EXPECT_FALSE(step(commissioning_spin)) << "what is there of an earlier one goes first";
   for (; n < 100000; ++n) {
     EXPECT_FALSE(step(commissioning_spin));
@@ -178,7 +179,8 @@ TEST_F(Phases, TheSpinSumsStationsAndRamps) {
     ASSERT_LE(std::abs(inside::target_bpp() - last), high / 300 + 1) << n << ": once in a millisecond";
     last = inside::speed_ramp().value = inside::target_bpp();
     inside::selected().speed_bpp = last / 50 * 49;
-    inside::selected().angle_bam += static_cast<std::uint32_t>(last);
+    turned += static_cast<std::uint32_t>(last);
+    inside::selected().angle_bam = turned + static_cast<std::uint32_t>(n % 2 == 0 ? high : -high);
   }
   // ramps of 0.1, 0.2, 0.2 and 0.1 s, settling and stations, up to a turn behind each, 0.3 s at rest
   const int turn = static_cast<int>(4294967296.0 / high), least = 1000 + 2000 + 2000 + 1000 + 3 * 14000 + 3000;
@@ -186,17 +188,17 @@ TEST_F(Phases, TheSpinSumsStationsAndRamps) {
   EXPECT_LT(n, least + 50 + 14 * turn) << "each leg ends with a millisecond";
   const spin_t& s = commissioning.spin;
   for (int k = 0; k < 3; ++k) {
-    const spin_station_t& at = s.station[k];
+    const spin_sums_t& at = s.station[k];
     ASSERT_GE(at.periods, 10000) << k;
     ASSERT_LE(at.periods, 10000 + (k == 1 ? 1 : 3) * turn) << k;
     EXPECT_NEAR(static_cast<double>(at.speed) / at.periods, k == 1 ? high : high / 3, 300.0) << k;
     const double turns = static_cast<double>(at.speed) / 4294967296.0;
-    EXPECT_NEAR(turns, std::round(turns), high / 4294967296.0) << "whole turns";
+    EXPECT_NEAR(turns, std::round(turns), 3.0 * high / 4294967296.0) << "whole turns";
     EXPECT_EQ(at.voltage_q, std::int64_t{at.periods} * raw(20.0, 16));
     EXPECT_EQ(at.current_q, std::int64_t{at.periods} * raw(0.5, 20));
     EXPECT_EQ(at.current_d, std::int64_t{at.periods} * raw(0.25, 20));
   }
-  for (const spin_ramp_t& ramp : s.ramp) {
+  for (const spin_sums_t& ramp : s.ramp) {
     EXPECT_GE(ramp.periods, 2000 + 4000 - 10) << "a ramp ends with a millisecond";
     EXPECT_LE(ramp.periods, 2000 + 4000 + 10 + 3 * turn);
     EXPECT_EQ(ramp.current_q, std::int64_t{ramp.periods} * raw(0.5, 20));
@@ -251,7 +253,7 @@ TEST_F(Phases, TheSpinOfAShaftThatShowsNoAxisBeginsWithAVector) {
     inside::selected().angle_bam += static_cast<std::uint32_t>(inside::target_bpp());
     ASSERT_LT(++n, 100000);
   }
-  for (const spin_station_t& at : commissioning.spin.station) EXPECT_GE(at.periods, 10000);
+  for (const spin_sums_t& at : commissioning.spin.station) EXPECT_GE(at.periods, 10000);
   EXPECT_NEAR(inside::selected().speed_bpp, bpp_of(200), 300);
   EXPECT_TRUE(inside::flags().spins);
   EXPECT_EQ(commissioning.phase, COMMISSIONING_MAP) << "which is passed over";

@@ -383,8 +383,8 @@ TEST_F(Commissioning, EachPhaseBeginsWithoutSums) {
   EXPECT_TRUE(inside::flags().spins && !inside::flags().frozen);
   EXPECT_EQ(c.spin.leg, 0);
   EXPECT_EQ(c.spin.tick, 0);
-  for (const spin_station_t& s : c.spin.station) EXPECT_EQ(s.speed | s.voltage_q | s.current_q | s.periods, 0);
-  for (const spin_ramp_t& r : c.spin.ramp) EXPECT_EQ(r.speed | r.current_q | r.periods, 0);
+  for (const spin_sums_t& s : c.spin.station) EXPECT_EQ(s.speed | s.voltage_q | s.current_q | s.periods, 0);
+  for (const spin_sums_t& r : c.spin.ramp) EXPECT_EQ(r.speed | r.current_q | r.periods, 0);
 }
 
 }  // namespace
