@@ -16,7 +16,7 @@
 #define STIFFNESS_Q30 38655L   // (60 rad/s * 100 us)^2
 #define DAMPING_Q30 12884902L  // 2 * 60 rad/s * 100 us
 #define SIXTH_BAM 715827883L
-#define QUARTER_BAM 1073741824L
+#define QUARTER_BITS 30  // of a turn
 #define TURN_STEP_BAM 238609L  // 0.02 degrees electrical per period
 #define SETTLE_PERIODS 6000
 #define SLOPE_STEPS 64  // periods for the current limit
@@ -55,7 +55,7 @@ bool commissioning_align(drive_t* d) {
     c->uniform = d->found.uniform;
     d->control.references.closed = true;
     c->target_bam = d->position.selected.angle_bam;
-    const uint32_t near_bam = c->target_bam + (uint32_t)(c->uniform ? QUARTER_BAM : 0);
+    const uint32_t near_bam = c->target_bam + ((uint32_t)c->uniform << QUARTER_BITS);
     const int32_t sixths = (int32_t)q_div((int32_t)(near_bam / 2u), SIXTH_BAM / 2, 0);
     c->goal_bam = (uint32_t)sixths * (uint32_t)SIXTH_BAM;
   }
