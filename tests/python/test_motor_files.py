@@ -264,7 +264,7 @@ def test_what_a_rule_says_of_a_motor_of_another_size_is_named_with_its_value(nat
     (note,) = (line for line in lines if "by rules" in line)
     assert "start_current 40 A" in note and "speed_ramp" not in note  # the latter is what it is by default
     (note,) = (line for line in lines if "nor implied" in line)
-    assert "drop_band 0.4 A" in note and "speed_ramp" not in note
+    assert "hysteresis_band 0.8 A" in note and "drop_band" not in note and "speed_ramp" not in note
 
 
 def test_a_bad_file_is_bad_input(native, tmp_path):
@@ -284,7 +284,7 @@ def test_a_new_motor_is_written_from_a_nameplate_and_works(native, tmp_path):
     path = tmp_path / "new.toml"
     made = told("new", path, *(part for pair in ANSWERS.items() for part in pair))
     assert made.exit_code == 0, made.stderr
-    assert "drop_band 0.2 A" in made.stdout
+    assert "hysteresis_band 0.4 A" in made.stdout
     assert not any(words in made.stdout for words in LEFT)  # these follow, and are what they are by default
     machine = tomllib.loads(path.read_text(encoding="utf-8"))["machine"]
     assert machine["magnet_flux"] == pytest.approx(0.16, rel=1e-3)
