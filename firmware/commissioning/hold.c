@@ -16,7 +16,7 @@
 #define STIFFNESS_Q30 38655L   // (60 rad/s * 100 us)^2
 #define DAMPING_Q30 12884902L  // 2 * 60 rad/s * 100 us
 #define SIXTH_BAM 715827883L
-#define QUARTER_BITS 30  // of a turn
+#define QUARTER_BITS 30        // of a turn
 #define TURN_STEP_BAM 238609L  // 0.02 degrees electrical per period
 #define SETTLE_PERIODS 6000
 #define SLOPE_STEPS 64  // periods for the current limit
