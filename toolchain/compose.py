@@ -10,11 +10,11 @@ a feature.toml, or a path from where the list is. What a feature.toml may say:
     headers     what declares the rows: in its folder, or from the root
     words       kinds of words (text/word_list.h) that are its own
     instead     by source outside of the folder that only this feature has a use for: what an image without it has
-    rows        by table: what stands there, with its place: a number, smaller ones come first; commands of the console
-                have theirs from its list. What console and link alone ask for is dropped without them, and with it what
-                a feature's commands*.c and requests*.c are for
+    rows        by table: what stands there, with its place: a number, smaller ones come first. What console and link
+                alone ask for is dropped without them, and with it what a feature's commands*.c and requests*.c are for
 
-What else is its own stands in lists of its folder (row_lists.py): parameters, signals, requests, faults, texts.
+What else is its own stands in lists of its folder (row_lists.py): parameters, signals, commands, requests, faults,
+texts.
 
 What has not changed is not written again. FOLDER belongs into the include path before the tree.
 """
@@ -24,7 +24,7 @@ import re
 import sys
 import tomllib
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -33,11 +33,12 @@ import edition_tables
 import pack_text
 import row_lists
 import word_code
-from edition_tables import COMMANDS, TABLES
+from edition_tables import TABLES
 from row_lists import ROOT, Lists, rows_of
 
 EDITIONS, FEATURE = "firmware/editions", "feature.toml"
 PARAMETERS, SIGNALS, FAULTS, REQUESTS = "parameter_list.h", "signal_list.h", "fault_list.h", "request_list.h"
+COMMANDS = "command_list.h"
 KINDS, KIND = "firmware/text/catalogue.h", re.compile(r"CATALOGUE_([A-Z]+) = (\d+)")
 TEXTS, CMAKE = "packed_text_table.c", "composed.cmake"
 OF_COMMAND = 0x100  # REQUEST_OF_COMMAND, firmware/link/request_rows.h
@@ -66,6 +67,11 @@ class Feature:
         return tuple(row[0] for row in rows_of(self.folder, SIGNALS))
 
     @property
+    def commands(self) -> tuple[str, ...]:
+        """Names of its own commands."""
+        return tuple(row[0] for row in rows_of(self.folder, COMMANDS))
+
+    @property
     def faults(self) -> tuple[int, ...]:
         """Numbers of the faults that only it brings about."""
         return tuple(int(row[0]) for row in rows_of(self.folder, FAULTS))
@@ -78,11 +84,8 @@ class Feature:
 
     def places(self, table: str) -> list[tuple[int, str]]:
         """Its rows in a table with their places."""
-        rows = self.rows.get(table, {})
-        if isinstance(rows, list):
-            return [(COMMANDS.index(name.removeprefix("command_")), name) for name in rows]
         found = []
-        for name, places in rows.items():
+        for name, places in self.rows.get(table, {}).items():
             found += [(place, name) for place in (places if isinstance(places, list) else [places])]
         return found
 
@@ -95,11 +98,19 @@ class Edition:
     file: Path
     features: tuple[Feature, ...]
 
-    def rows(self, table: str) -> list[tuple[Feature, list[tuple[int, str]]]]:
+    def commands(self, root: Path = ROOT) -> list[str]:
+        """The names of all commands by their places, of those as well that it has not."""
+        return [row[0] for row in self.lists(root).rows(COMMANDS, "COMMAND")]
+
+    def rows(self, table: str, root: Path = ROOT) -> list[tuple[Feature, list[tuple[int, str]]]]:
         """What stands in a table: the features that have rows in it, and these with their places."""
         asked_by = TABLES[table].asked_by
         if asked_by and asked_by not in {feature.name for feature in self.features}:
             return []
+        if table == "commands":
+            place = self.commands(root).index
+            owners = (feature for feature in self.features if feature.commands)
+            return [(owner, [(place(name), f"command_{name}") for name in owner.commands]) for owner in owners]
         return [(feature, own) for feature in self.features if (own := feature.places(table))]
 
     def outside(self, root: Path = ROOT) -> list[Feature]:
@@ -170,9 +181,11 @@ def table_text(name: str, edition: Edition, root: Path) -> str:
         ValueError: two features want the same place.
     """
     table = TABLES[name]
+    if name == "commands":
+        table = replace(table, least=len(edition.commands(root)))
     rows: list[tuple[int, str]] = []
     headers = {table.header}
-    for feature, own in edition.rows(name):
+    for feature, own in edition.rows(name, root):
         rows += own
         headers |= {header_of(feature, header, root) for header in feature.headers}
     rows.sort()
@@ -269,8 +282,8 @@ def needless_texts(edition: Edition, root: Path) -> set[str]:
     found = {f"TEXT_PARAMETER_{name}" for feature in gone for name in feature.parameters.values()}
     found |= {f"TEXT_SIGNAL_{name}" for feature in gone for name in feature.signals}
     found |= {f"TEXT_{what}_{number}" for feature in gone for number in feature.faults for what in ("FAULT", "REMEDY")}
-    answered = {COMMANDS[place] for _, own in edition.rows("commands") for place, _ in own}
-    commands = [name for name in COMMANDS if name not in answered]
+    answered = {name for _, own in edition.rows("commands", root) for _, name in own}
+    commands = [name for name in edition.commands(root) if f"command_{name}" not in answered]
     found |= {f"TEXT_COMMAND_{what}{name}" for name in commands for what in ("", "ARGUMENTS_")}
     kinds = tuple(f"TEXT_{word}_" for feature in gone for word in feature.words)
     kinds += tuple(f"TEXT_HELP_{name}_" for name in commands)

@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-import row_lists
-
 
 @dataclass(frozen=True)
 class Table:
@@ -33,9 +31,6 @@ class Table:
 
 
 SERVICE, STATUS = "firmware/interfaces/service.h", "firmware/api/status.h"
-COMMANDS = [
-    row[0] for row in row_lists.rows((row_lists.ROOT / "firmware/console/command_list.h").read_text("utf-8"), "COMMAND")
-]
 TABLES = {
     "position_sources": Table("const position_source_t", "firmware/interfaces/source.h", "places", 9, prefix=""),
     "drive_states": Table("const state_t", "firmware/interfaces/state.h", "places", 8, prefix=""),
@@ -47,7 +42,7 @@ TABLES = {
     "watch": Table("watch_t", SERVICE, "one"),
     "status_updates": Table("service_t", STATUS),
     "requests": Table("const request_row_t", "firmware/link/request_rows.h", arrays=True, asked_by="link"),
-    "commands": Table("command_function_t", "firmware/console/commands.h", "places", len(COMMANDS), asked_by="console"),
+    "commands": Table("command_function_t", "firmware/console/commands.h", "places", asked_by="console"),
     "status_lines": Table("const status_line_t", STATUS, asked_by="console"),
     "text_port": Table("const text_port_t", "firmware/interfaces/text_port.h", "one", asked_by="link"),
     "interlocks": Table("interlock_t", "firmware/mode/interlock.h"),

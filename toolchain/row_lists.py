@@ -30,6 +30,7 @@ JOINED = {
     "signal_list.h": Joined("firmware/dictionary/all_signals.h", "SIGNAL", (0,), places=True),
     "fault_list.h": Joined("firmware/dictionary/all_faults.h", "FAULT", (0,)),
     "request_list.h": Joined("firmware/link/all_requests.h", "REQUEST", (0, 2)),
+    "command_list.h": Joined("firmware/console/all_commands.h", "COMMAND", (0,), places=True),
     "help_list.h": Joined("firmware/console/all_help.h", "HELP", (0, 1)),
 }
 

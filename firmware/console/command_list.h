@@ -1,24 +1,25 @@
-// The console's commands. COMMAND(name, arguments, help): command_NAME carries it out (commands.h). No include guard:
-// it is included with different meanings of COMMAND.
+// The console's own commands. COMMAND(name, arguments, help): command_NAME carries it out (commands.h). Those of a
+// feature are in a list of its folder; the build joins all rows (all_commands.h): PLACE(number) says where those that
+// follow stand in the table, smaller ones first. No include guard: it is included with different meanings of COMMAND.
 
+PLACE(10)
 COMMAND(help, "[command]", "the commands, or more of one")
 COMMAND(list, "[part]", "parameters whose name or meaning contains the part; * marks changed ones")
 COMMAND(get, "name", "a parameter or a signal: value, range, meaning")
 COMMAND(set, "name value [unit]", "changes a parameter")
-COMMAND(save, "", "saves the parameters for the next power-on")
-COMMAND(load, "", "goes back to the saved parameters")
-COMMAND(defaults, "", "sets every parameter to its default; not kept until saved")
+
+PLACE(30)
 COMMAND(start, "hold | free", "switches the power stage on and runs")
 COMMAND(stop, "", "brings the shaft to rest, then switches off")
 COMMAND(coast, "", "switches off at once: the shaft coasts")
 COMMAND(ref, "[speed [rpm]]", "speed reference; before the start or while it runs")
 COMMAND(reset, "", "clears a latched fault")
 COMMAND(status, "", "state of the drive")
-COMMAND(look, "", "whether and how the shaft turns, by two short pulses")
+
+PLACE(50)
 COMMAND(watch, "[signal ..]", "a line twice a second until a key is pressed")
 COMMAND(faults, "", "the last faults: when, what, and the values then")
 COMMAND(signals, "[part]", "signals and their values")
-COMMAND(commission, "[start hold | start free | results]", "measures machine and inverter; turns the shaft, 90 s")
-COMMAND(scope, "[channels | trigger | every | before | mode | arm | stop | print]", "captures signals")
-COMMAND(can, "", "the CAN node: rate, state, errors, who commands")
+
+PLACE(90)
 COMMAND(version, "", "version of the firmware")

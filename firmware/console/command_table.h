@@ -1,4 +1,4 @@
-// The commands by their places in command_list.h.
+// The commands by their places in all_commands.h.
 
 #ifndef STILLSPIN_FIRMWARE_CONSOLE_COMMAND_TABLE_H
 #define STILLSPIN_FIRMWARE_CONSOLE_COMMAND_TABLE_H
@@ -9,12 +9,14 @@
 extern "C" {
 #endif
 
+#define PLACE(number)
 #define COMMAND(name, arguments, help) +1
 enum {
   COMMANDS = 0
-#include "firmware/console/command_list.h"
+#include "firmware/console/all_commands.h"
 };
 #undef COMMAND
+#undef PLACE
 
 typedef void command_function_t(const words_of_line_t* a);
 

@@ -19,7 +19,7 @@
 
 #define COMMAND(name, arguments, help) command_##name,
 command_function_t* const edition_commands[] = {
-#include "firmware/console/command_list.h"
+#include "firmware/console/all_commands.h"
 };
 #undef COMMAND
 const status_line_t* const edition_status_lines[] = {&state_line,    &speed_line, &current_line,    &dc_link_line,

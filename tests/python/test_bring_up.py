@@ -16,8 +16,8 @@ pytest.importorskip("stillspin._core", reason="the native module is not built")
 ROOT = Path(__file__).resolve().parents[2]
 GUIDE = (ROOT / "docs" / "bring-up.md").read_text(encoding="utf-8")
 STAGES = dict(re.findall(r"^## (Stage [1-9]): [^\n]*\n(.*?)(?=^## |\Z)", GUIDE, re.MULTILINE | re.DOTALL))
-LIST = (ROOT / "firmware/console/command_list.h").read_text(encoding="utf-8")
-COMMANDS = set(re.findall(r"^COMMAND\((\w+),", LIST, re.MULTILINE))
+LISTS = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "firmware").rglob("command_list.h"))
+COMMANDS = set(re.findall(r"^COMMAND\((\w+),", LISTS, re.MULTILINE))
 PATIENCE = 700  # ms for the answer to a line
 
 

@@ -166,6 +166,14 @@ def test_test_that_reaches_into_the_drive_is_caught(tmp_path: Path) -> None:
     assert [(f.path, f.line) for f in inside.check(tmp_path)] == [("tests/firmware/y.cpp", 2)]
 
 
+PERIOD = {
+    "control/frame.h": "typedef struct { int32_t d, q; } dq_t;\nvoid frame_turn(dq_t* out, const dq_t* in);\n",
+    "firmware/drive/schedule.c": "void schedule_next(const drive_t* d, schedule_t* s) { s->slot = d->slot; }\n",
+    "firmware/interfaces/source.h": "typedef struct {\n  void (*follow)(drive_t* d, const dq_t* now);\n} source_t;\n",
+    "firmware/drive/map.c": "static void follow(dq_t* at) { at->d = 0; }\n",
+}
+
+
 @pytest.mark.parametrize(
     "line",
     [
@@ -175,9 +183,17 @@ def test_test_that_reaches_into_the_drive_is_caught(tmp_path: Path) -> None:
         "  drive.position.selected.angle_bam += half;",
         "  d->samples.windows[0].span_ticks = 1;",
         "  d->schedule.slot++;",
+        "  d->flags.spins = true;",
+        "  d->model = d->config.nameplate;",
+        "  frame_turn(&d->control.measured_q20, &v);",
+        "  frame_turn(d->samples.windows, &v);",
+        "  unknown(&d->position.observer);",
+        "  avv_t* const a = &d->position.avv;",
     ],
 )
 def test_member_of_a_period_that_somebody_else_writes_is_caught(tmp_path: Path, line: str) -> None:
+    for path, text in PERIOD.items():
+        plant(tmp_path, path, text)
     plant(tmp_path, "firmware/board/board.c", f"void look(drive_t* d) {{\n{line}\n}}\n")
     assert [(f.path, f.line) for f in writers.check(tmp_path)] == [("firmware/board/board.c", 2)]
 
@@ -187,17 +203,23 @@ def test_member_of_a_period_that_somebody_else_writes_is_caught(tmp_path: Path, 
     [
         "  const int32_t q = d->control.references.current_q20.q;",
         "  const dq_t* const r = &d->control.references.current_q20;",
-        "  if (d->schedule.slot == SLOT_LOOK) d->position.seen = d->position.selected;",
+        "  if (d->schedule.slot == SLOT_LOOK) d->position.seen_here = d->position.selected;",
+        "  frame_turn(&v, &d->control.measured_q20);",
+        "  schedule_next(d, &d->schedule);  // whose it is to write",
+        "  d->source->follow(d, &d->control.measured_q20);",
+        "  use(d->control.measured_q20, sizeof(d->model));",
     ],
 )
 def test_member_of_a_period_that_is_read_passes(tmp_path: Path, line: str) -> None:
+    for path, text in PERIOD.items():
+        plant(tmp_path, path, text)
     plant(tmp_path, "firmware/board/board.c", f"void look(drive_t* d) {{\n{line}\n}}\n")
     assert writers.check(tmp_path) == []
 
 
-def test_each_writer_writes(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_writer_writes() -> None:
     assert writers.check(ROOT) == []
+    writes = writers.Writes(ROOT)
     for member, owners in writers.WRITERS.items():
-        monkeypatch.setattr(writers, "WRITERS", {member: ("nobody",)})
-        found = {finding.path for finding in writers.check(ROOT)}
-        assert all(any(path.startswith(owner) for path in found) for owner in owners)
+        found = {file for source in writes.texts for _, to in writes.of(source, member) for file in (source, to)}
+        assert all(any(path.startswith(owner) for path in found) for owner in owners), member

@@ -86,6 +86,19 @@ def test_what_console_and_link_ask_for_goes_with_them(tmp_path: Path) -> None:
         assert edition.rows("resets")
 
 
+def test_a_command_stands_where_its_list_says_and_only_with_its_feature(tmp_path: Path) -> None:
+    own = plant(tmp_path, "mine/feature.toml", 'needs = ["console"]\nheaders = ["mine.h"]\n').parent
+    plant(own, "command_list.h", 'PLACE(25)\nCOMMAND(limit, "", "the limit")\n')
+    listed = plant(tmp_path, "own.txt", f"{QUIET}link\nconsole\nmine\n")
+    edition = compose.read_edition(str(listed))
+    names = edition.commands()
+    assert names.index("defaults") + 1 == names.index("limit") == names.index("start") - 1
+    made = rows(compose.table_text("commands", edition, ROOT))
+    assert made == ["NULL" if name == "can" else f"command_{name}" for name in names]
+    assert "TEXT_COMMAND_limit" in compose.made(edition)[compose.pack_text.NUMBERS]
+    assert "limit" not in compose.read_edition("lab").commands()
+
+
 def test_without_console_and_link_nothing_of_them_is_linked(tmp_path: Path) -> None:
     """What main() leads to is taken out of the library, as the image takes it; the board's functions stay open."""
     compose.write(tmp_path / "made", str(plant(tmp_path, "quiet.txt", QUIET)))
@@ -131,7 +144,8 @@ def test_every_row_is_declared_by_a_header_that_its_feature_names() -> None:
     for feature in compose.all_features():
         headers = [ROOT / compose.header_of(feature, header, ROOT) for header in feature.headers]
         declared = "".join(header.read_text(encoding="utf-8") for header in headers)
-        for name in (name for table in feature.rows.values() for name in table):
+        rows_of_it = [name for table in feature.rows.values() for name in table]
+        for name in (*rows_of_it, *(f"command_{command}" for command in feature.commands)):
             assert re.search(rf"\b{name}\b", declared), f"{feature.name}: {name}"
 
 

@@ -1,58 +1,176 @@
-"""What the steps of the control interrupt have of each other in a period has one writer each; the others read it.
+"""What the steps of the control interrupt have of each other has its writer; the others read it.
 
-A write is an assignment to the member, by its path in the drive or by a pointer to the group that it lies in, or a
-pointer to it through which it may be written.
+A write is an assignment to the member, by its path in the drive or by a pointer to the group that it lies in; a pointer
+to it through which it may be written; and such a pointer handed to a function.
 """
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from checks import Finding
 from checks.calls import code
 
-# Type and name of the group in the drive, member ("" for all of them): the files and folders that write it.
-WRITERS = {
-    ("drive_control_t", "control", "references"): (
-        "firmware/start/",  # the state START
-        "firmware/commissioning/",  # the state COMMISSION
+# The type of a group of the drive: who has a pointer of it has the group.
+GROUPS = {
+    "drive_control_t": "control",
+    "drive_position_t": "position",
+    "drive_samples_t": "samples",
+    "drive_modulation_t": "modulation",
+    "schedule_t": "schedule",
+    "state_flags_t": "flags",
+}
+_STATES = ("firmware/start/", "firmware/commissioning/")  # START and COMMISSION
+_FRESH = "firmware/drive/reset.c"  # the state after power-on
+_SLICED = "firmware/hysteresis/hysteresis.c"  # in the place of windows
+# Each member by its path in the drive: the files and folders that write it.
+WRITERS: dict[str, tuple[str, ...]] = {
+    # Of a period, in the order of the steps.
+    "schedule": ("firmware/drive/schedule.c",),
+    "samples": ("firmware/drive/sampling.c", _SLICED, "firmware/drive/position.c"),
+    "control.measured_q20": ("firmware/drive/position.c", _SLICED),
+    "position.selected": ("firmware/drive/position.c",),
+    "position.seen": ("firmware/start/if_start/",),
+    "position.seen_q20": ("firmware/drive/position.c",),
+    "position.torque_accel_q8": ("firmware/drive/position.c",),
+    "state": ("firmware/mode/mode.c",),
+    "flags": (*_STATES, "firmware/mode/mode.c"),
+    "control.references": (
+        *_STATES,
         "firmware/drive/speed.c",  # RUN, STOP and a spin
         "firmware/mode/mode.c",  # the power stage opens
     ),
-    ("drive_control_t", "control", "measured_q20"): (
+    "control.command_rpm_q16": ("firmware/drive/sequence.c", "firmware/mode/mode.c"),
+    "control.target_bpp": ("firmware/drive/sequence.c", "firmware/mode/mode.c", "firmware/commissioning/spin.c"),
+    "control.weakening_q20": ("firmware/drive/speed.c",),
+    "control.headroom_q20": ("firmware/drive/speed.c",),
+    "control.braking_headroom_q20": ("firmware/drive/speed.c",),
+    "control.per_torque_constant": ("firmware/drive/speed.c", _FRESH),
+    "control.command_q16": ("firmware/drive/current.c",),
+    "modulation": ("firmware/drive/modulation.c", "firmware/start/start.c", _FRESH),
+    # Of more than one: who learns or carries something on.
+    "model": (
+        "firmware/drive/position.c",  # to the operating point
+        "firmware/sources/observer/learning.c",
+        "firmware/drive/inertia.c",
+        *_STATES,  # begin with the nameplate, and measure
+        "firmware/drive/reload.c",
+        _FRESH,
+    ),
+    "trim": (
+        "firmware/drive/sequence.c",  # the calibration
+        "firmware/sources/observer/learning.c",
+        "firmware/start/start.c",
+        _FRESH,
+    ),
+    "position.low": ("firmware/sources/", "firmware/drive/position.c"),
+    "position.high": ("firmware/sources/", "firmware/drive/position.c"),
+    "position.blend": ("firmware/sources/", "firmware/drive/position.c"),
+    "position.is_near": ("firmware/sources/",),
+    "position.avv": ("firmware/sources/", "firmware/drive/position.c", "firmware/commissioning/hold.c"),
+    "position.observer": (
+        "firmware/sources/",
         "firmware/drive/position.c",
-        "firmware/hysteresis/hysteresis.c",  # in the place of windows
+        "firmware/drive/brake_release_hold.c",  # a shaft that stands
+        "firmware/drive/inertia.c",
+        "firmware/drive/protection.c",  # takes the residual
+        "firmware/drive/speed.c",  # learns cogging in a period that has room for it
     ),
-    ("drive_control_t", "control", "command_q16"): ("firmware/drive/current.c",),
-    ("drive_position_t", "position", "selected"): ("firmware/drive/position.c",),
-    ("drive_samples_t", "samples", ""): (
-        "firmware/drive/sampling.c",
-        "firmware/hysteresis/hysteresis.c",  # in the place of windows
-    ),
-    ("schedule_t", "schedule", ""): ("firmware/drive/schedule.c",),
+    # By the background level, between two control interrupts.
+    "config": ("firmware/drive/reload.c", "firmware/commissioning/sequence.c", _FRESH),
 }
-_ASSIGNED = r"(?:\s*\[[^\]]*\]|(?:\.|->)\w+)*\s*(?:[-+*/|&^]?=(?!=)|\+\+|--|<<=|>>=)"
-_POINTED = r"^\s*(?!.*\bconst\b[\w ]*\*)\w+\s*\*[^=;]*=\s*&"
+ALL = ("control", "svpwm", "estimators", "firmware")
+_ANY = r"[a-z]\w*"
+_CHAIN = r"(?:\s*\[[^\]]*\]|(?:\.|->)\w+)*"
+_ASSIGNED = rf"{_CHAIN}\s*(?:[-+*/|&^]?=(?!=)|\+\+|--|<<=|>>=)"
+_POINTED = r"^\s*(?!.*\bconst\b[\w ]*\*)\w+\s*\*[^=;]*=\s*&?"
+_PROTOTYPE = re.compile(
+    r"^(static\s)?[A-Za-z_][\w \t*]*?[ *](\w+)\(((?:[^;{}()]|\([^()]*\))*)\)\s*([;{])", re.MULTILINE
+)
+_POINTER = re.compile(r"\(\*(\w+)\)\(([^;()]*)\);")  # a member that is a function
 
 
-def _writes(text: str, group_type: str, group: str, member: str) -> Iterator[int]:
-    aliases = re.findall(rf"(?<!const )\b{group_type}\s*\*\s*(?:const\s+)?(\w+)", text)
-    way = rf"(?:(?:\bd->|\bdrive\.){group}\.|\b(?:{'|'.join(aliases) or '(?!)'})->){member or '(?=[a-z])'}"
-    end = r"\b" if member else r"\w+"
-    yield from (match.start() for match in re.finditer(rf"{way}{end}{_ASSIGNED}", text))
-    if member:
-        yield from (match.start() for match in re.finditer(rf"{_POINTED}{way}\b", text, re.MULTILINE))
+@dataclass(frozen=True)
+class _Function:
+    parameters: list[str]
+    defined: str  # in this file, or "" where it is only declared
+
+
+def _functions(root: Path) -> dict[str, _Function]:
+    found: dict[str, _Function] = {}
+    for folder in ALL:
+        for path in sorted((root / folder).rglob("*.[ch]"), key=lambda path: (path.suffix == ".c", path)):
+            text, source = code(path), path.relative_to(root).as_posix()
+            for static, name, parameters, end in _PROTOTYPE.findall(text):
+                key = f"{source} {name}" if static and path.suffix == ".c" else name
+                found[key] = _Function(parameters.split(","), source if end == "{" else "")
+            for name, parameters in _POINTER.findall(text):
+                found[f"->{name}"] = _Function(parameters.split(","), "")
+    return found
+
+
+def _place_in_call(text: str, at: int) -> tuple[str, int]:
+    """The function in whose call this stands as an argument, and which one it is."""
+    depth, argument = 0, 0
+    for k in range(at - 1, -1, -1):
+        sign = text[k]
+        if sign in ")]":
+            depth += 1
+        elif sign in "([" and depth > 0:
+            depth -= 1
+        elif sign in "([":
+            name = re.search(r"((?:->)?\w+)\s*$", text[:k])
+            return (name[1] if name else "", argument)
+        elif sign == "," and depth == 0:
+            argument += 1
+        elif sign in ";{}":
+            break
+    return "", 0
+
+
+class Writes:
+    """Of a tree."""
+
+    def __init__(self, root: Path) -> None:
+        self.texts = {p.relative_to(root).as_posix(): code(p) for p in sorted((root / "firmware").rglob("*.[ch]"))}
+        self._functions = _functions(root)
+
+    def _handed_to(self, source: str, start: int) -> str | None:
+        """Where the function is defined that may write what it is handed here; None where none may."""
+        text = self.texts[source]
+        name, argument = _place_in_call(text, start)
+        known = self._functions.get(f"{source} {name}") or self._functions.get(name)
+        if known is None or argument >= len(known.parameters):
+            return None if name in {"", "sizeof", "if", "while"} or text[start] != "&" else name
+        taken = known.parameters[argument]
+        written = ("*" in taken or "[" in taken) and "const" not in taken.partition("*")[0]
+        return (known.defined or name) if written else None
+
+    def of(self, source: str, path: str) -> Iterator[tuple[int, str]]:
+        """Where a file writes a member, and the file of the function that does it for it, if one does."""
+        text = self.texts[source]
+        group, _, member = path.partition(".")
+        types = [name for name, of in GROUPS.items() if of == group]
+        aliases = re.findall(rf"(?<!const )\b(?:{'|'.join(types) or '(?!)'})\s*\*\s*(?:const\s+)?(\w+)", text)
+        way = rf"(?:\bd->|\bdrive\.){group}\b" + (rf"\.{member}\b" if member else "")
+        if aliases:
+            way = rf"(?:{way}|\b(?:{'|'.join(aliases)})->{member or _ANY}\b)"
+        yield from ((match.start(), "") for match in re.finditer(rf"{way}{_ASSIGNED}", text))
+        yield from ((match.start(), "") for match in re.finditer(rf"{_POINTED}{way}", text, re.MULTILINE))
+        for match in re.finditer(rf"(?<=[(,\s])&?{way}{_CHAIN}\s*(?=[,)])", text):
+            if (writer := self._handed_to(source, match.start())) is not None:
+                yield match.start(), writer
 
 
 def check(root: Path) -> list[Finding]:
-    """Findings for members of a period that somebody else writes."""
-    texts = {p.relative_to(root).as_posix(): code(p) for p in sorted((root / "firmware").rglob("*.c"))}
+    """Findings for members of the drive that somebody else writes."""
+    writes = Writes(root)
     return [
-        Finding(
-            source, text.count("\n", 0, place) + 1, f"writes {group}.{member or '*'}, which is {owners[0]}'s to write"
-        )
-        for (group_type, group, member), owners in WRITERS.items()
-        for source, text in texts.items()
+        Finding(source, text.count("\n", 0, place) + 1, f"writes {path}, which is {owners[0]}'s to write")
+        for path, owners in WRITERS.items()
+        for source, text in writes.texts.items()
         if not source.startswith(owners)
-        for place in _writes(text, group_type, group, member)
+        for place, writer in writes.of(source, path)
+        if not writer.startswith(owners)
     ]
