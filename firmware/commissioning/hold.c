@@ -52,7 +52,7 @@ void commissioning_hold(drive_t* d) {
 bool commissioning_align(drive_t* d) {
   commissioning_t* const c = &commissioning;
   if (c->tick == 0) {
-    c->uniform = d->found.uniform;
+    c->uniform = starting.uniform;
     d->control.references.closed = true;
     c->target_bam = d->position.selected.angle_bam;
     const uint32_t near_bam = c->target_bam + ((uint32_t)c->uniform << QUARTER_BITS);
@@ -102,14 +102,14 @@ static deviation_model_t model_now(const drive_t* d) {
 
 deviation_t commissioning_window(const drive_t* d, uint16_t k) {
   const deviation_model_t at = model_now(d);
-  return deviation_of(&at, &d->samples.windows[k], &d->samples.frames[k]);
+  return deviation_of(&at, &d->samples.windows[k], &d->position.frames[k]);
 }
 
 bool commissioning_add_pair(const drive_t* d, tensor_sums_t* sums) {
   if (!commissioning_has_pair(d)) return false;
   const deviation_model_t at = model_now(d);
-  const deviation_t first = deviation_of(&at, &d->samples.windows[0], &d->samples.frames[0]);
-  const deviation_t second = deviation_of(&at, &d->samples.windows[1], &d->samples.frames[1]);
+  const deviation_t first = deviation_of(&at, &d->samples.windows[0], &d->position.frames[0]);
+  const deviation_t second = deviation_of(&at, &d->samples.windows[1], &d->position.frames[1]);
   tensor_add(sums, &first, &second);
   return true;
 }

@@ -7,7 +7,7 @@
 #include "firmware/mode/mode.h"
 
 /// Background level: evaluation.
-void commissioning_service(drive_t* d);
+void commissioning_service(const drive_t* d);
 bool commissioning_align(drive_t* d);                     // commissioning/hold.c
 bool commissioning_climb(drive_t* d);                     // commissioning/staircase.c
 bool commissioning_map(drive_t* d);                       // commissioning/map.c

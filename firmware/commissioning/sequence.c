@@ -3,9 +3,11 @@
 #include "firmware/commissioning/outcome.h"
 #include "firmware/commissioning/phases.h"
 #include "firmware/commissioning/result.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "firmware/start/start.h"
+#include "hal/hal_irq.h"
 #include "hal/hal_replay.h"
 
 #define LONGER_TICKS 500
@@ -14,13 +16,18 @@
 commissioning_t commissioning;
 
 static commissioning_report_t report;
+static const state_request_t commission = {DRIVE_COMMISSION, DRIVE_READY};
+static bool longer;  // the samples settle, as a commissioning wants it, until the parameters are loaded again
 
 typedef struct {
   bool (*step)(drive_t* d);
   int16_t begins;  // per mille of the time of the whole, as motor A takes it
 } phase_t;
 
-void commissioning_reset(void) { clear(&commissioning, sizeof commissioning); }
+void commissioning_reset(void) {
+  clear(&commissioning, sizeof commissioning);
+  longer = false;
+}
 
 static bool at_once(drive_t* d) {
   (void)d;
@@ -34,14 +41,6 @@ static const phase_t phases[] = {{at_once, 0},
                                  {commissioning_map, 220},
                                  {at_once, 1000}};
 
-// The sensors' ringing after an edge is a tenth of a degree at the usual settle time; here that counts. The parameters
-// put it back: every end of a commissioning lets them be loaded again.
-static void settle_longer(drive_t* d) {
-  sampling_config_t* const c = &d->config.modulator.sampling;
-  const int16_t most = (int16_t)(d->config.modulator.pulse_ticks / 20 * 13 - SAMPLING_MIN_TICKS);
-  c->settle_ticks = (int16_t)q_min(c->settle_ticks + LONGER_TICKS, q_max(c->settle_ticks, most));
-}
-
 static void commissioning_begin(drive_t* d, drive_state_t behind) {
   (void)behind;  // it ends in READY
   commissioning_t* const c = &commissioning;
@@ -52,12 +51,10 @@ static void commissioning_begin(drive_t* d, drive_state_t behind) {
   c->solve_motion = false;
   c->predicting = false;
   c->uniform = false;
-  settle_longer(d);
   start_state.begin(d, DRIVE_COMMISSION);
 }
 
-static void commissioning_abandon(drive_t* d) {
-  (void)d;
+static void commissioning_abandon(void) {
   commissioning_t* const c = &commissioning;
   if (c->outcome != COMMISSIONING_RUNNING) return;
   c->outcome = COMMISSIONING_ABORTED;
@@ -95,12 +92,11 @@ static bool has_failed(const drive_t* d) {
   return commissioning.outcome == COMMISSIONING_RUNNING && d->state == DRIVE_FAULT;
 }
 
-static void settle(drive_t* d) {
+static void settle(const drive_t* d) {
   commissioning_t* const c = &commissioning;
   if (has_failed(d)) {
     c->outcome = COMMISSIONING_FAILED;
     c->phase = COMMISSIONING_IDLE;
-    drive_parameters_changed();
   }
   if (c->solve_motion) {
     commissioning_solve_motion(c);
@@ -113,24 +109,46 @@ static void settle(drive_t* d) {
   if (!c->evaluate) return;
   commissioning_judge(c, &report);
   c->outcome = commissioning_use(&report);
-  drive_parameters_changed();  // also when nothing was written: settle_longer has to be undone
+  drive_parameters_changed();  // of what was written, and without that of the longer settling
   c->evaluate = false;
 }
 
-void commissioning_service(drive_t* d) {
+// Also of one that was asked for and did not begin.
+static void put_back(void) {
+  if (!longer || drive.request.begin == &commission || commissioning.outcome == COMMISSIONING_RUNNING) return;
+  longer = false;
+  drive_parameters_changed();
+}
+
+void commissioning_service(const drive_t* d) {
   const bool wanted = has_failed(d) || commissioning.solve_motion || commissioning.map.judge || commissioning.evaluate;
-  if (!wanted || !hal_replay_has_work(REPLAY_EVALUATED)) return;
-  hal_replay_work_begin(REPLAY_EVALUATED);
-  settle(d);
-  hal_replay_work_end();
+  if (wanted && hal_replay_has_work(REPLAY_EVALUATED)) {
+    hal_replay_work_begin(REPLAY_EVALUATED);
+    settle(d);
+    hal_replay_work_end();
+  }
+  put_back();
 }
 
 const state_t commissioning_state = {commissioning_begin, commissioning_step, commissioning_estimate,
                                      commissioning_abandon};
 
-static const state_request_t commission = {DRIVE_COMMISSION, DRIVE_READY};
+// The sensors' ringing after an edge is a tenth of a degree at the usual settle time; while it measures that counts.
+static void settle_longer(modulator_config_t* m) {
+  sampling_config_t* const c = &m->sampling;
+  const int16_t most = (int16_t)(m->pulse_ticks / 20 * 13 - SAMPLING_MIN_TICKS);
+  c->settle_ticks = (int16_t)q_min(c->settle_ticks + LONGER_TICKS, q_max(c->settle_ticks, most));
+}
 
-void drive_command_commission(void) { drive.request.begin = &commission; }
+// In one, behind what was changed before: it begins with the next interrupt, or not at all.
+void drive_command_commission(void) {
+  drive_exchange();
+  const uint16_t state = hal_irq_disable();
+  if (!longer) settle_longer(&drive.config.modulator);
+  longer = true;
+  drive.request.begin = &commission;
+  hal_irq_restore(state);
+}
 
 commissioning_outcome_t drive_commissioning_outcome(void) { return commissioning.outcome; }
 

@@ -32,9 +32,6 @@ SIGNAL(link_voltage, V, 16, DRIVE, d->samples.link_q16, "DC-link voltage")
 SIGNAL(load_torque, NM, 16, ROTOR, q_mul_sat(d->position.selected.load_accel_q8, d->model.torque_per_accel_q24, 24),
        "estimated load torque")
 SIGNAL(windows, NONE, 0, DRIVE, d->samples.count, "current windows sampled in the last period")
-SIGNAL(start_phase, NONE, 0, DRIVE, d->found.phase, "phase of the start")
-SIGNAL(polarity_sigma, NONE, 8, DRIVE, d->found.sigma_q8,
-       "confidence in the polarity found at the start, standard errors")
 
 PLACE(30)
 SIGNAL(current_a, A, 20, DRIVE, phase_current(d, false),

@@ -4,6 +4,7 @@
 
 #include "firmware/drive/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
+#include "firmware/interfaces/phase_control.h"
 #include "firmware/mode/mode.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_profile.h"
@@ -12,9 +13,17 @@
 
 void (*volatile drive_onlooker)(void);
 
+static void read_samples(drive_t* d) {
+  if (d->sliced != 0u) {
+    edition_phase_control->samples(d);
+  } else {
+    drive_read_samples(d, &d->samples, &d->supervision.missing);
+  }
+}
+
 void drive_control_step(drive_t* d) {
-  schedule_next(d);
-  drive_read_samples(d);
+  schedule_next(d, &d->schedule);
+  read_samples(d);
   const bool windows = d->samples.count > 0u;
   hal_profile_step(windows ? CYCLES_READ_SAMPLES : CYCLES_READ_SLICES);
   drive_estimate(d);
@@ -23,7 +32,7 @@ void drive_control_step(drive_t* d) {
   drive_sequence(d);
   hal_profile_step(windows ? CYCLES_SUPERVISE : CYCLES_SUPERVISE_NO_WINDOWS);
   drive_control_speed(d);
-  drive_control_current(d);
+  drive_control_current(d, &d->control.current, &d->control.command_q16);
   hal_profile_step(CYCLES_CONTROL);
   drive_modulate(d);
   void (*const onlooker)(void) = drive_onlooker;

@@ -46,17 +46,18 @@ static int32_t less_ripple_q20(int32_t sum_q18, int32_t ripple_q14, int32_t per_
 }
 
 static void measure_current(drive_t* d, const estimator_output_t* first) {
-  drive_samples_t* const s = &d->samples;
+  const drive_samples_t* const s = &d->samples;
+  estimator_frame_t* const frames = d->position.frames;
   dq_t sum = {0, 0};
   const estimator_output_t* const selected = &d->position.selected;
   const uint32_t middle_bam = middle_of(first);
-  deviation_frames(s->windows, s->count, middle_bam, machine_speed_rad_q30(first->speed_bpp), s->frames);
+  deviation_frames(s->windows, s->count, middle_bam, machine_speed_rad_q30(first->speed_bpp), frames);
   for (uint16_t k = 0; k < s->count; k++) {
-    sum.d += s->frames[k].current_q18.d;
-    sum.q += s->frames[k].current_q18.q;
+    sum.d += frames[k].current_q18.d;
+    sum.q += frames[k].current_q18.q;
   }
   // The frame turns by 0.13 rad in a period at 3000 rpm on motor A: for a ripple one angle will do.
-  const dq_t ripple_q16 = frame_park(s->ripple_q16, s->frames[s->count / 2u].rotation);
+  const dq_t ripple_q16 = frame_park(s->ripple_q16, frames[s->count / 2u].rotation);
   const int32_t per_count_q30 = position_per_windows_q30[s->count];
   const dq_t mean_q20 = {less_ripple_q20(sum.d, q_mul_hi(d->model.yd_q30, ripple_q16.d), per_count_q30),
                          less_ripple_q20(sum.q, q_mul_hi(d->model.yq_q30, ripple_q16.q), per_count_q30)};
@@ -82,7 +83,7 @@ void drive_estimate(drive_t* d) {
   // or that looks on.
   const bool single = (source->traits & SOURCE_SINGLE) != 0u;
   const estimator_output_t* first = &d->position.selected;
-  const estimator_frame_t* frames = d->samples.frames;
+  const estimator_frame_t* frames = d->position.frames;
   if (open_loop) {
     if (single) first = &d->position.seen;
     if (!single) frames = NULL;
@@ -127,7 +128,7 @@ void position_preset_axis(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
 }
 
 // The one in use, and the flux, which may look on.
-static void begin_sources(drive_t* d, bool keeps) {
+static void begin_sources(const drive_t* d, bool keeps) {
   const position_source_t* const flux = position_sources[POSITION_FLUX_CONV];
   if (flux != NULL) flux->begin(d, keeps);
   if (d->source != flux && d->source->begin != NULL) d->source->begin(d, keeps);

@@ -25,6 +25,10 @@ bool position_observer_rests(const drive_t* d);
 /// Gives the shaft to the high-speed estimator alone, whatever the speed; the blend goes on from there.
 void position_bumpless_transfer(drive_t* d);
 
+/// The position source looks on, while somebody else says which angle is in use; or it rests, and has that.
+static inline void position_look_on(drive_t* d, estimator_input_t* in) { d->position.seen = d->source->step(d, in); }
+static inline void position_look_away(drive_t* d) { d->position.seen = d->position.selected; }
+
 /// What the source has seen of a shaft that a vector turned is used from here on, and it goes on as it is.
 void position_keep(drive_t* d);
 

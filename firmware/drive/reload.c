@@ -54,9 +54,13 @@ static void reload(void) {
   hal_irq_restore(state);
 }
 
+void drive_exchange(void) {
+  if (drive.request.reload && hal_replay_has_work(REPLAY_RELOADED)) reload();
+}
+
 void background_step(drive_t* d) {
   for (uint16_t k = 0; edition_works[k] != NULL; k++) edition_works[k](d);
-  if (d->request.reload && hal_replay_has_work(REPLAY_RELOADED)) reload();
+  drive_exchange();
 }
 
 void drive_service(void) {

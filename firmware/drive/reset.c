@@ -35,7 +35,7 @@ void drive_reset(void) {
   drive.control.current_limit_q20 = interlock_current_limit();
   drive.model = drive.config.nameplate;
   drive.control.per_torque_constant = q_invert(machine_torque_constant_q24(&drive.model, 0));
-  sampling_scale_sensors(&drive);
+  sampling_scale_sensors(&drive, &drive.samples);
   drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);
   drive_modulation_reset(&drive.modulation);
   position_preset(&drive, 0, 0);

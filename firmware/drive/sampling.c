@@ -81,10 +81,8 @@ static void evaluate(const scale_t* s, const svpwm_window_t* w, const hal_adc_wi
 }
 
 // Takes over an eighth of what each window says; up to 2000 V, so that the sum stays in 31 bits.
-static void follow_link(drive_t* d, const sampling_buffer_t* b, uint16_t count) {
+static void follow_link(drive_samples_t* s, int32_t volts_per_code_q16, const sampling_buffer_t* b, uint16_t count) {
   if (count == 0u) return;
-  drive_samples_t* const s = &d->samples;
-  const int32_t volts_per_code_q16 = d->config.volts_per_code_q16;
   int32_t sum_q16 = 0;
   if (s->link_q16 == 0) s->link_q16 = (int32_t)b->windows[0].link * volts_per_code_q16;
   for (uint16_t k = 0; k < count; k++) {
@@ -100,23 +98,16 @@ static void take_raw(drive_samples_t* s, const hal_adc_window_t* w) {
   s->raw_b_q8 = (int32_t)w->start_b * (256 / (int32_t)HAL_ADC_START_SAMPLES);
 }
 
-void sampling_scale_sensors(drive_t* d) { d->samples.scale = slopes_scale(&d->config.slopes, &d->trim); }
-
-void drive_read_samples(drive_t* d) {
-  if (d->sliced != 0u) {
-    edition_phase_control->samples(d);
-    return;
-  }
+void drive_read_samples(const drive_t* d, drive_samples_t* s, uint16_t* missing) {
   const sampling_buffer_t* const b = sampling_swap();
   const svpwm_pattern_t* const p = modulation_sampled(&d->modulation);
-  drive_samples_t* const s = &d->samples;
   s->count = 0;
   const bool complete = b->count == p->window_count;
-  d->supervision.missing = (complete && p->window_count > 0u) ? 0u : (uint16_t)(d->supervision.missing + 1u);
+  *missing = (complete && p->window_count > 0u) ? 0u : (uint16_t)(*missing + 1u);
   if (!complete) return;
   if (d->state == DRIVE_CALIBRATE) take_raw(s, &b->windows[0]);
-  follow_link(d, b, p->window_count);
-  if (d->schedule.slot == SLOT_VOLTAGE) sampling_scale_sensors(d);
+  follow_link(s, d->config.volts_per_code_q16, b, p->window_count);
+  if (d->schedule.slot == SLOT_VOLTAGE) sampling_scale_sensors(d, s);
   const scale_t scale = scale_of(d);
   int16_t middles[ESTIMATOR_WINDOWS];
   for (uint16_t k = 0; k < p->window_count; k++) {

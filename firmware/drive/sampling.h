@@ -19,7 +19,9 @@ const sampling_buffer_t* sampling_swap(void);
 void sampling_reset(void);
 
 /// From offsets and mismatch of the sensors as they are now to what their codes mean.
-void sampling_scale_sensors(drive_t* d);
+static inline void sampling_scale_sensors(const drive_t* d, drive_samples_t* s) {
+  s->scale = slopes_scale(&d->config.slopes, &d->trim);
+}
 
 /// Background level: code of the auxiliary input in the last period's first window.
 uint16_t sampling_auxiliary(void);

@@ -22,8 +22,7 @@ static bool is_beside_flux(const drive_t* d) {
 
 // What cannot wait: operating point or covariance, by turns where both want it, the covariance first where it would be
 // renewed anyway. A shaft that is held wants its operating point always.
-static bool take_urgent(drive_t* d, bool observes) {
-  schedule_t* const s = &d->schedule;
+static bool take_urgent(const drive_t* d, schedule_t* s, bool observes) {
   const bool due = s->update_urgent || (observes && !s->held && deviation_observer_is_due(&d->position.observer));
   const bool moved = s->held || q_abs_sat(d->control.measured_q20.q - d->model.iq_q20) > MOVED_Q20;
   if (!moved && !due) return false;
@@ -45,9 +44,8 @@ static void take_slot(schedule_t* s) {
   s->slot = (schedule_slot_t)s->last;
 }
 
-static void slot_or_give_way(drive_t* d, bool observes) {
-  schedule_t* const s = &d->schedule;
-  if ((s->held || s->waited < WAITED_MAX) && take_urgent(d, observes)) {
+static void slot_or_give_way(const drive_t* d, schedule_t* s, bool observes) {
+  if ((s->held || s->waited < WAITED_MAX) && take_urgent(d, s, observes)) {
     s->waited++;
   } else {
     take_slot(s);
@@ -88,8 +86,7 @@ static void begin(schedule_t* s) {
   s->skips = false;
 }
 
-void schedule_next(drive_t* d) {
-  schedule_t* const s = &d->schedule;
+void schedule_next(const drive_t* d, schedule_t* s) {
   begin(s);
   s->turning = drive_is_turning(d) || d->flags.open_loop;
   const bool observes = s->turning && has_observer(d);
@@ -98,7 +95,7 @@ void schedule_next(drive_t* d) {
   s->update_urgent = observes && (is_young(d) || deviation_observer_update_is_urgent(&d->position.observer));
   if (is_slot(s)) {
     s->exclusive = d->flags.wants_exclusive;
-    if (!s->exclusive) slot_or_give_way(d, observes);
+    if (!s->exclusive) slot_or_give_way(d, s, observes);
   } else {
     s->renews = s->task == TASK_RENEW;
     s->judges = is_judgement(s->task) && !s->unsure && !is_young(d) && d->state != DRIVE_START;

@@ -50,15 +50,15 @@ static void calibrate(drive_t* d) {
 }
 
 // A commissioning that is under way, or that a start leads to, is not wanted any more.
-static void abandon(drive_t* d) {
+static void abandon(void) {
   const state_t* const s = drive_states[DRIVE_COMMISSION];
-  if (s != NULL) s->abandon(d);
+  if (s != NULL) s->abandon();
 }
 
 // Opens the power stage at once and goes back to READY.
 static void coast(drive_t* d) {
   drive_open_power_stage(d);
-  abandon(d);
+  abandon();
   drive_enter(d, DRIVE_READY);
 }
 
@@ -84,7 +84,7 @@ static void break_off(drive_t* d) {
   // The gates are off already, and the background level is about to write what was found.
   if (d->flags.over) return;
   const bool turning = drive_is_turning(d);
-  abandon(d);
+  abandon();
   if (turning) {
     begin_stop(d);
   } else {

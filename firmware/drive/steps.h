@@ -20,6 +20,8 @@ signal_look_t* signal_look(uint16_t place);
 
 /// Background level: what is worked out between two control interrupts (drive/reload.c).
 void background_step(drive_t* d);
+/// Of that, what was changed of the parameters.
+void drive_exchange(void);
 /// In every pass; rests while a host steps the drive.
 void drive_service(void);
 
@@ -29,18 +31,19 @@ uint16_t drive_dead_band_ticks(void);
 void drive_control_interrupt(void);
 void drive_window_interrupt(void);
 
-// The steps of the control interrupt, in their order.
-void drive_read_samples(drive_t* d);     // sampling.c
-void drive_estimate(drive_t* d);         // position.c
-void drive_protect(drive_t* d);          // protection.c
-void drive_sequence(drive_t* d);         // drive/sequence.c
-void drive_control_speed(drive_t* d);    // drive/speed.c
-void drive_control_current(drive_t* d);  // drive/current.c
-void drive_modulate(drive_t* d);         // modulation.c
+// The steps of the control interrupt, in their order. What one of them may write is the check `writers`' to hold; where
+// it is a group of the drive and nothing else, the step is given that, and the drive to be read.
+/// What the period that begins does (interfaces/schedule.h), from that of the period before.
+void schedule_next(const drive_t* d, schedule_t* s);  // schedule.c
+/// *missing: periods in a row without all of their samples.
+void drive_read_samples(const drive_t* d, drive_samples_t* s, uint16_t* missing);                   // sampling.c
+void drive_estimate(drive_t* d);                                                                    // position.c
+void drive_protect(drive_t* d);                                                                     // protection.c
+void drive_sequence(drive_t* d);                                                                    // drive/sequence.c
+void drive_control_speed(drive_t* d);                                                               // drive/speed.c
+void drive_control_current(const drive_t* d, current_controller_t* controller, dq_t* command_q16);  // drive/current.c
+void drive_modulate(drive_t* d);                                                                    // modulation.c
 void drive_modulation_reset(drive_modulation_t* m);
-
-/// Decides what the period that begins does (schedule.h).
-void schedule_next(drive_t* d);
 
 /// Lets the position sources and the speed control start from this angle and speed (drive/hand_over.c).
 void drive_bumpless_transfer(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);

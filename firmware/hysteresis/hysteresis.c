@@ -24,6 +24,7 @@ typedef struct {
   int32_t band_q20;      // A, half width at the beginning
   int32_t rises;         // of the legs between two corrections of the band at the frequency that is wanted; 0: none are
   uint16_t slice_ticks;  // of 10 ns
+  bool chosen;           // in the place of the current control
 } hysteresis_config_t;
 
 hysteresis_t hysteresis;
@@ -46,6 +47,7 @@ static void take(void) {
   config.rises = q_shr_round(parameters.hysteresis_frequency * 30, 16);
   if (config.rises == 0 && parameters.hysteresis_frequency != 0) config.rises = 1;
   config.slice_ticks = made_slice_ticks;
+  config.chosen = parameters.current_law == CURRENT_LAW_HYSTERESIS;
 }
 
 const config_part_t hysteresis_part = {make, take, NULL};
@@ -167,7 +169,7 @@ static void begin(drive_t* d) {
 }
 
 static bool hysteresis_step(drive_t* d) {
-  const bool wanted = d->config.values.current_law == 1 && (d->state == DRIVE_RUN || d->state == DRIVE_STOP);
+  const bool wanted = config.chosen && (d->state == DRIVE_RUN || d->state == DRIVE_STOP);
   if (wanted && d->sliced == 0u) begin(d);
   if (!wanted && d->sliced != 0u) {
     hal_sampling_timer_end();

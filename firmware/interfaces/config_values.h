@@ -10,15 +10,12 @@
 #define CONFIG_VALUES(_) \
   _(bootstrap_time)      \
   _(current_divider)     \
-  _(current_law)         \
   _(current_limit)       \
   _(divergence_limit)    \
   _(divergence_time)     \
   _(emergency_stop)      \
   _(encoder_trim)        \
   _(excitation)          \
-  _(flux_beside)         \
-  _(flying_start)        \
   _(hold_time)           \
   _(id_low_speed)        \
   _(inertia_adapt)       \
@@ -36,13 +33,11 @@
   _(speed_limit)         \
   _(spin_speed)          \
   _(start_current)       \
-  _(start_method)        \
   _(stop_time)           \
   _(trip_current)        \
   _(voltage_use)         \
   _(weakening_gain)      \
-  _(weakening_limit)     \
-  _(wiring_check)
+  _(weakening_limit)
 
 #define CONFIG_VALUE(name) int32_t name;
 typedef struct {

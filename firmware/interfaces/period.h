@@ -29,8 +29,7 @@
 /// What the control interrupt knows about the last period.
 typedef struct {
   estimator_window_t windows[ESTIMATOR_WINDOWS];
-  ab_t ripple_q16;                              // ripple flux at the middles of all windows, added up, V period
-  estimator_frame_t frames[ESTIMATOR_WINDOWS];  // the windows in the frame of who looks at them first, or in use
+  ab_t ripple_q16;  // ripple flux at the middles of all windows, added up, V period
   uint16_t count;
   slopes_scale_t scale;                     // of the sensors, renewed in a slot
   int32_t link_end_q16[ESTIMATOR_WINDOWS];  // DC link at the end of each window, unfiltered, V
@@ -41,13 +40,14 @@ typedef struct {
 /// Angle and speed in use and the estimators behind them.
 typedef struct {
   estimator_output_t selected, low, high;
-  estimator_output_t seen;  // by the position source, while it looks on
+  estimator_output_t seen;  // by the position source, while it looks on and another angle is in use
   dq_t seen_q20;            // mean current in the frame that the windows were turned into, A
   avv_t avv;
   deviation_observer_t observer;
   blend_t blend;
-  bool is_near;             // what was last regressed is near enough to learn from
-  int32_t torque_accel_q8;  // acceleration of the torque of the measured current
+  bool is_near;                                 // what was last regressed is near enough to learn from
+  int32_t torque_accel_q8;                      // acceleration of the torque of the measured current
+  estimator_frame_t frames[ESTIMATOR_WINDOWS];  // the windows in the frame of who looks at them first, or in use
 } drive_position_t;
 
 typedef struct {

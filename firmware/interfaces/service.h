@@ -28,7 +28,7 @@ extern service_t* const edition_pass[];
 
 /// What the background level works out for the drive between two control interrupts, from the drive alone: a recording
 /// has it (hal/hal_replay.h), and a host that steps the drive has it done between two steps.
-typedef void work_t(struct drive* d);
+typedef void work_t(const struct drive* d);
 extern work_t* const edition_works[];
 
 /// Before the watchdog is serviced, so many CPU cycles after the last time; NULL where nobody counts.

@@ -26,16 +26,18 @@ enum {
 #define EXCITATION_BY_SOURCE 3
 
 typedef struct {
+  /// Of a period: angle and speed. What it has for itself of the drive's position (interfaces/period.h), and what it
+  /// learns of machine and sensors, it writes; the rest of the drive is there to be read.
   estimator_output_t (*step)(struct drive* d, estimator_input_t* in);
   /// The pulses it wants where the parameter `excitation` leaves that to it; NULL: alternating.
   excitation_t (*excitation)(const struct drive* d);
   /// Highest i_d with which it sees; NULL: any.
-  int32_t (*highest_d_q20)(struct drive* d);
+  int32_t (*highest_d_q20)(const struct drive* d);
   /// Goes along with an angle that somebody else knows; NULL: need not.
-  void (*follow)(struct drive* d, const estimator_output_t* now);
+  void (*follow)(const struct drive* d, const estimator_output_t* now);
   /// Begins anew from angle and speed in use, or goes on with what it has seen while a vector turned the shaft; so does
   /// the flux, whichever source has the shaft, as it may look on. NULL: has nothing of its own.
-  void (*begin)(struct drive* d, bool keeps);
+  void (*begin)(const struct drive* d, bool keeps);
   /// Whether what it measures turns the other way than the windows since then. Only soon after a start, within an
   /// electrical turn. NULL: it measures nothing.
   bool (*is_reversed)(const struct drive* d);

@@ -5,7 +5,6 @@
 #define STILLSPIN_FIRMWARE_INTERFACES_STATE_H
 
 #include "estimators/estimator.h"
-#include "estimators/wiring.h"
 
 struct drive;
 
@@ -29,7 +28,7 @@ typedef struct {
   /// COMMISSION.
   estimator_output_t (*estimate)(struct drive* d, estimator_input_t* in);
   /// COMMISSION: it is not wanted any more, whatever state the drive is in.
-  void (*abandon)(struct drive* d);
+  void (*abandon)(void);
 } state_t;
 
 /// By drive_state_t; NULL where the drive itself does all there is, or this edition leaves it out (editions/).
@@ -49,17 +48,9 @@ typedef struct {
   bool wants_exclusive;  // the next period is for a decision alone
   bool caught;           // a rotor that turns: angle and speed in use are its own
   bool open_loop;        // a current vector turns the rotor: the position source runs, and is not used yet
-  bool spins;            // COMMISSION: speed control and position source are at work
+  bool spins;            // speed control and position source are at work, as in RUN
   bool frozen;           // the model does not follow the windows
-  bool over;             // the gates are off, and the background level has the rest
+  bool over;             // the power stage is open again, and the background level has the rest
 } state_flags_t;
-
-/// What the last start has found. It stays for those who look.
-typedef struct {
-  uint16_t phase;    // start_phase_t: it is in this one, or ended in it
-  int32_t sigma_q8;  // confidence in the polarity, standard errors
-  wiring_t wiring;   // what the axis was found with says about it
-  bool uniform;      // the inductances hardly differ, nothing shows the axis at rest
-} start_found_t;
 
 #endif

@@ -7,6 +7,7 @@
 #ifndef STILLSPIN_FIRMWARE_MODE_MODE_H
 #define STILLSPIN_FIRMWARE_MODE_MODE_H
 
+#include "estimators/wiring.h"
 #include "firmware/interfaces/config.h"
 #include "firmware/interfaces/period.h"
 #include "firmware/interfaces/state.h"
@@ -43,9 +44,9 @@ typedef struct drive {
   machine_model_t model;  // nameplate, at the operating point and with what was learnt
   drive_modulation_t modulation;
   drive_supervision_t supervision;
-  slopes_trim_t trim;  // current offsets, mismatch of the sensors
-  start_found_t found;
-  uint32_t settled_at;                           // period in which the currents will have been at rest for long enough
+  slopes_trim_t trim;   // current offsets, mismatch of the sensors
+  wiring_t wiring;      // mistake that the last start has seen, beside the fault that it brought about
+  uint32_t settled_at;  // period in which the currents will have been at rest for long enough
   int32_t zero_current_a_q8, zero_current_b_q8;  // currents at rest while the offsets are found, codes
   int32_t offset_residual_q8;  // mean deviation of the currents from their offsets while these are found, codes
   drive_config_t config;

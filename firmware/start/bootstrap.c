@@ -14,7 +14,7 @@
 static void begin_charge(drive_t* d) {
   d->flags.shorted = true;
   starting.charged = 0;
-  start_enter(d, START_CHARGE);
+  start_enter(START_CHARGE);
 }
 
 static bool flows(const drive_t* d) {

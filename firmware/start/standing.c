@@ -20,7 +20,7 @@
 #define TURNING_RPM_Q16 1310720L  // 20 rpm: slower counts as standing, AVV's speed is noise
 
 static void begin_axis(drive_t* d) {
-  if (start_begin_standstill(d)) start_enter(d, START_AXIS);
+  if (start_begin_standstill(d)) start_enter(START_AXIS);
 }
 
 static drive_fault_t fault_of(wiring_t wiring) {
@@ -35,12 +35,12 @@ static start_phase_t step_axis(drive_t* d) {
   const bool seen = start_sees_axis(d, starting.tick >= AXIS_SKIP, &axis_bam);
   position_preset_axis(d, (uint32_t)axis_bam, 0);  // the regressions must be made at one and the same angle
   if (!seen) return START_GOES_ON;
-  const drive_fault_t fault = fault_of(d->found.wiring);
+  const drive_fault_t fault = fault_of(d->wiring);
   if (fault != FAULT_NONE) {
     drive_trip(d, fault);
     return START_GOES_ON;
   }
-  if (d->found.uniform && d->flags.behind == DRIVE_COMMISSION) {
+  if (starting.uniform && d->flags.behind == DRIVE_COMMISSION) {
     start_run(d, 0, 0);
     return START_GOES_ON;
   }
@@ -60,16 +60,16 @@ static int32_t present_speed(const drive_t* d) {
 static start_phase_t decided(drive_t* d, polarity_result_t result, int32_t sigma_q8) {
   const uint32_t angle = d->position.avv.observer.angle_bam;
   const int32_t speed = present_speed(d);
-  d->found.sigma_q8 = sigma_q8;
+  starting.sigma_q8 = sigma_q8;
   start_run(d, (result == POLARITY_WRONG) ? angle + ANGLE_BAM_HALF_TURN : angle, speed);
   if (d->state == DRIVE_RUN && speed == 0) hold_begin(d);
   return START_GOES_ON;
 }
 
-static void begin_test(drive_t* d, start_phase_t phase) {
+static void begin_test(start_phase_t phase) {
   static const followed_t none = {0, 0};
   starting.followed = none;
-  start_enter(d, phase);
+  start_enter(phase);
 }
 
 static drive_fault_t left_open(const drive_start_t* s) { return s->starved ? FAULT_START_VOLTAGE : FAULT_POLARITY; }
@@ -101,7 +101,7 @@ static int32_t motion_current(const drive_start_t* s) {
 
 static void begin_motion(drive_t* d) {
   drive_start_t* const s = &starting;
-  if (d->found.phase != START_MOTION) s->tries = 0;
+  if (s->phase != START_MOTION) s->tries = 0;
   const tracking_observer_t* const seen = &d->position.avv.observer;
   if (s->starved && s->tries > 0u) {
     polarity_again(&s->motion, seen->angle_bam, seen->speed_bpp);
@@ -112,18 +112,18 @@ static void begin_motion(drive_t* d) {
                    seen->speed_bpp);
     s->motion.bounded = s->starved;
   }
-  begin_test(d, START_MOTION);
+  begin_test(START_MOTION);
 }
 
 // Twice with the same current, the second time together with the first; then with half as much again.
 static void begin_saturation(drive_t* d) {
   drive_start_t* const s = &starting;
-  if (d->found.phase != START_SATURATION) s->tries = 0;
+  if (s->phase != START_SATURATION) s->tries = 0;
   const int32_t more = (s->tries >= 2u) ? d->config.values.start_current / 2 : 0;
   const int32_t current = q_min(d->config.values.start_current + more, d->config.values.current_limit);
   if (s->tries == 1u) {
     saturation_again(&s->saturation);
-    begin_test(d, START_SATURATION);
+    begin_test(START_SATURATION);
     return;
   }
   if (!saturation_is_visible(&d->model, &d->config.saturation, current)) {
@@ -131,12 +131,12 @@ static void begin_saturation(drive_t* d) {
     return;
   }
   saturation_begin(&s->saturation, &d->model, &d->config.saturation, current);
-  begin_test(d, START_SATURATION);
+  begin_test(START_SATURATION);
 }
 
 static void begin_settle(drive_t* d) {
   d->control.references.closed = true;
-  start_enter(d, START_SETTLE);
+  start_enter(START_SETTLE);
 }
 
 static start_phase_t step_settle(drive_t* d) {
@@ -184,7 +184,7 @@ static start_phase_t step_motion(drive_t* d) {
   if (!followed_well(&s->followed, s->motion.current_q20)) return starve(d);
   if (s->motion.result != POLARITY_AMBIGUOUS) return decided(d, s->motion.result, s->motion.sigma_q8);
   if (s->tries < (s->starved ? HELD_TRIES : MOTION_TRIES)) return START_MOTION;
-  d->found.sigma_q8 = s->motion.sigma_q8;
+  s->sigma_q8 = s->motion.sigma_q8;
   drive_trip(d, left_open(s));
   return START_GOES_ON;
 }

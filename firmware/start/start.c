@@ -29,7 +29,7 @@ static bool prepare(drive_t* d, drive_state_t behind) {
   }
   clear(&d->supervision, sizeof d->supervision);
   clear(&starting, sizeof starting);
-  clear(&d->found, sizeof d->found);
+  d->wiring = WIRING_GOOD;
   d->model = d->config.nameplate;
   inertia_match_reset(&inertia_match);
   speed_controller_scale(&d->control.speed, INERTIA_SAME_Q24);
@@ -57,13 +57,13 @@ static void start_begin(drive_t* d, drive_state_t behind) {
 
 static void start_step(drive_t* d) {
   starting.tick++;
-  const start_phase_t next = start_phases[d->found.phase]->step(d);
+  const start_phase_t next = start_phases[starting.phase]->step(d);
   if (next != START_GOES_ON) start_phases[next]->begin(d);
   if (d->flags.invalid > 0u && !d->flags.gates_off) d->flags.invalid--;
 }
 
 static estimator_output_t start_estimate(drive_t* d, estimator_input_t* in) {
-  return start_phases[d->found.phase]->estimate(d, in);
+  return start_phases[starting.phase]->estimate(d, in);
 }
 
 const state_t start_state = {start_begin, start_step, start_estimate, NULL};

@@ -13,11 +13,12 @@
 #define AXIS_TIMEOUT 200u  // periods
 
 drive_start_t starting;
+start_ways_t start_ways;
 
 void start_reset(void) { clear(&starting, sizeof starting); }
 
-void start_enter(drive_t* d, start_phase_t phase) {
-  d->found.phase = phase;
+void start_enter(start_phase_t phase) {
+  starting.phase = phase;
   starting.tick = 0;
 }
 
@@ -39,22 +40,15 @@ bool start_has_exclusive_slot(drive_t* d) {
   return now;
 }
 
-// A turning shaft can be looked for, and is to be.
-static bool listens(const drive_t* d) {
-  return start_phases[START_LISTEN] != NULL && d->config.values.flying_start != 0;
-}
+start_phase_t start_look(const drive_t* d) { return start_ways.listens ? START_LISTEN : start_at_standstill(d); }
 
-start_phase_t start_look(const drive_t* d) { return listens(d) ? START_LISTEN : start_at_standstill(d); }
-
-bool start_is_open_loop(const drive_t* d) {
-  return d->config.values.start_method == 1 && d->flags.behind != DRIVE_COMMISSION;
-}
+bool start_is_open_loop(const drive_t* d) { return start_ways.open_loop && d->flags.behind != DRIVE_COMMISSION; }
 
 // Only where the listening has found that the shaft stands.
-static bool checks_wiring(const drive_t* d) { return d->config.values.wiring_check != 0 && listens(d); }
+static bool checks_wiring(void) { return start_ways.checks_wiring && start_ways.listens; }
 
 start_phase_t start_at_standstill(const drive_t* d) {
-  return (start_is_open_loop(d) && !checks_wiring(d)) ? START_IF_RAMP : START_AXIS;
+  return (start_is_open_loop(d) && !checks_wiring()) ? START_IF_RAMP : START_AXIS;
 }
 
 bool start_begin_standstill(drive_t* d) {
@@ -75,12 +69,12 @@ void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   drive_bumpless_transfer(d, angle_bam, speed_bpp);
   d->control.references.current_q20.q = 0;
   drive_enter(d, state_behind(d));
-  if (d->state == DRIVE_STOP) drive_states[DRIVE_COMMISSION]->abandon(d);
+  if (d->state == DRIVE_STOP) drive_states[DRIVE_COMMISSION]->abandon();
 }
 
 static void judge_wiring(drive_t* d) {
-  if (!checks_wiring(d)) return;
-  d->found.wiring = wiring_judge(&starting.axis, &d->model, q_shr(d->config.slopes.amps_per_code_q30, 10));
+  if (!checks_wiring()) return;
+  d->wiring = wiring_judge(&starting.axis, &d->model, q_shr(d->config.slopes.amps_per_code_q30, 10));
 }
 
 bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam) {
@@ -91,13 +85,13 @@ bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam) {
     return false;
   }
   if (!start_has_exclusive_slot(d)) return false;
-  if (d->found.phase == START_AXIS) {
+  if (s->phase == START_AXIS) {
     judge_wiring(d);
     if (start_is_open_loop(d)) return true;
   }
   const axis_result_t axis = axis_evaluate(&s->axis, &d->model);
   inverse_inductance_preset(&d->model, axis.mean_q30, axis.half_q30);
-  d->found.uniform = axis_is_hidden(axis.mean_q30, axis.half_q30);
+  s->uniform = axis_is_hidden(axis.mean_q30, axis.half_q30);
   *axis_bam = axis.angle_bam;
   return true;
 }

@@ -23,6 +23,7 @@ typedef enum {
 } start_phase_t;
 
 typedef struct {
+  uint16_t phase;    // start_phase_t: the start is in this one, or ended in it
   uint16_t tick;     // periods since the phase was entered
   uint16_t tries;    // of the present phase
   uint16_t charged;  // periods in which the bootstrap capacitors were charged
@@ -33,16 +34,27 @@ typedef struct {
   followed_t followed;  // the current, what the present test asked of it
   uint16_t held_back;   // how often all began anew
   bool starved;         // the current of a test did not follow: less is tried
+  bool uniform;         // the inductances hardly differ, nothing shows the axis at rest
+  int32_t sigma_q8;     // confidence in the polarity, standard errors
 } drive_start_t;
 
-/// A drive has one start.
+/// A drive has one start. What it has found stays for those who look.
 extern drive_start_t starting;
+
+/// Which ways the start may go, with the configuration: each by the feature that has it.
+typedef struct {
+  bool listens;        // whether the shaft turns (flying/)
+  bool checks_wiring;  // where it was found to stand (flying/)
+  bool open_loop;      // a current vector turns one that stands (if_start/)
+} start_ways_t;
+
+extern start_ways_t start_ways;
 
 /// As after power-on.
 void start_reset(void);
 
 /// By the phase that begins: it is in hand from this instant on.
-void start_enter(drive_t* d, start_phase_t phase);
+void start_enter(start_phase_t phase);
 void start_power(drive_t* d, bool on);
 
 /// Asks for the next period for a decision alone; true in that period, which has room for it.

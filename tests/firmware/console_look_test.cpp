@@ -155,13 +155,13 @@ TEST_F(Console, StatusNamesTheWiringBehindItsFault) {
   NEEDS("start/flying");
   inside::state() = DRIVE_RUN;
   drive_trip(&drive, FAULT_OPEN_PHASE);
-  inside::start_found().wiring = WIRING_OPEN_B;
+  inside::wiring() = WIRING_OPEN_B;
   const std::string named = command("status");
   EXPECT_TRUE(has(named, ": " + bench::words_of(CATALOGUE_WIRING, WIRING_OPEN_B) + ". ")) << named;
-  inside::start_found().wiring = WIRING_GOOD;
+  inside::wiring() = WIRING_GOOD;
   const std::string plain = command("status");
   EXPECT_FALSE(has(plain, bench::words_of(CATALOGUE_WIRING, WIRING_GOOD))) << plain;
-  inside::start_found().wiring = WIRING_OPEN_B;
+  inside::wiring() = WIRING_OPEN_B;
   inside::fault() = FAULT_SYNCHRONISM;
   EXPECT_FALSE(has(command("status"), bench::words_of(CATALOGUE_WIRING, WIRING_OPEN_B))) << "found by an earlier start";
 }

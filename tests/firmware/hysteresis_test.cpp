@@ -379,7 +379,7 @@ TEST_F(Hysteresis, TheCurrentControlRests) {
   inside::loop_is_closed() = true;
   inside::command_dq_q16() = {raw(10.0, 16), raw(-20.0, 16)};
   inside::current_controller().q.integral = 1234567;
-  drive_control_current(&drive);
+  drive_control_current(&drive, &inside::current_controller(), &inside::command_dq_q16());
   EXPECT_EQ(inside::command_dq_q16().d, 0);
   EXPECT_EQ(inside::command_dq_q16().q, 0);
   EXPECT_EQ(inside::current_controller().q.integral, 0);

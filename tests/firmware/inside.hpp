@@ -8,6 +8,7 @@ extern "C" {
 #include "firmware/api/status.h"
 #include "firmware/mode/mode.h"
 #include "firmware/sources/sources.h"
+#include "firmware/start/step.h"
 }
 
 namespace stillspin::test::inside {
@@ -28,20 +29,22 @@ inline auto& model() { return drive.model; }
 inline auto& periods() { return drive.periods; }
 inline auto& position() { return drive.position; }
 inline auto& request() { return drive.request; }
+inline auto& samples() { return drive.samples; }
 inline auto& schedule() { return drive.schedule; }
 inline auto& sensor_trim() { return drive.trim; }
 inline auto& settled_at() { return drive.settled_at; }
 inline auto& sliced() { return drive.sliced; }
 inline auto& source() { return drive.source; }
-inline auto& start_found() { return drive.found; }
+inline auto& start_found() { return starting; }
 inline auto& state() { return drive.state; }
 inline auto& supervision() { return drive.supervision; }
 inline auto& time_ms() { return drive.time_ms; }
+inline auto& wiring() { return drive.wiring; }
 inline auto& zero_current_a_q8() { return drive.zero_current_a_q8; }
 inline auto& zero_current_b_q8() { return drive.zero_current_b_q8; }
 
 // The last period's windows.
-inline auto& frames() { return drive.samples.frames; }
+inline auto& frames() { return drive.position.frames; }
 inline auto& link_end_q16() { return drive.samples.link_end_q16; }
 inline auto& link_q16() { return drive.samples.link_q16; }
 inline auto& ripple_q16() { return drive.samples.ripple_q16; }

@@ -227,7 +227,7 @@ TEST_F(Modulation, OnlyAStartShortsTheMachine) {
 TEST_F(Modulation, AnOpenLoopCommandsNoVoltageAndForgets) {
   inside::loop_is_closed() = false;
   inside::current_controller().d.integral = inside::current_controller().q.integral = 99999;
-  drive_control_current(&drive);
+  drive_control_current(&drive, &inside::current_controller(), &inside::command_dq_q16());
   EXPECT_EQ(inside::command_dq_q16().d, 0);
   EXPECT_EQ(inside::command_dq_q16().q, 0);
   EXPECT_EQ(inside::current_controller().d.integral, 0);
@@ -247,7 +247,7 @@ TEST_F(Modulation, WithADividerOfTwoTheCommandStandsStillInEverySecondPeriod) {
       const dq_t wanted =
           current_controller_step(&copy, &inside::config().current, &inside::model(), inside::reference_dq_q20(),
                                   inside::current_dq_q20(), inside::selected().speed_bpp);
-      drive_control_current(&drive);
+      drive_control_current(&drive, &inside::current_controller(), &inside::command_dq_q16());
       const bool steps = divider == 1 || period % 2 == 0;
       EXPECT_EQ(inside::command_dq_q16().d, steps ? wanted.d : before.d) << divider << period;
       EXPECT_EQ(inside::command_dq_q16().q, steps ? wanted.q : before.q) << divider << period;
@@ -261,7 +261,7 @@ TEST_F(Modulation, WhatIsFedComesOnTopAlongQ) {
     inside::schedule().period = 0;
     current_controller_reset(&inside::current_controller());
     inside::feed_forward_q16() = feed_forward_q16;
-    drive_control_current(&drive);
+    drive_control_current(&drive, &inside::current_controller(), &inside::command_dq_q16());
     return inside::command_dq_q16();
   };
   const dq_t without = command(0);

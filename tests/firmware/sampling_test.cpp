@@ -139,7 +139,7 @@ void sample(const std::vector<hal_adc_window_t>& windows) {
     board.adc.push_back(w);
     drive_window_interrupt();
   }
-  drive_read_samples(&drive);
+  drive_read_samples(&drive, &inside::samples(), &inside::missing_windows());
 }
 
 // A link that nothing is known of is as the first windows have it; then each window moves it by an eighth.

@@ -53,7 +53,7 @@ class Schedule : public Drive {
   static std::vector<schedule_t> next(int count) {
     std::vector<schedule_t> all;
     for (int k = 0; k < count; ++k) {
-      schedule_next(&drive);
+      schedule_next(&drive, &inside::schedule());
       all.push_back(inside::schedule());
     }
     return all;

@@ -36,7 +36,7 @@ class SpeedTask : public Drive {
   }
   static void millisecond() {
     for (int k = 0; k < 10; ++k) {
-      schedule_next(&drive);
+      schedule_next(&drive, &inside::schedule());
       drive_control_speed(&drive);
     }
   }

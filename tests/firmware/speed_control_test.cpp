@@ -176,7 +176,7 @@ TEST_F(SpeedTask, EachPeriodHasItsOwnTask) {
     c.headroom_q20 = raw(3.0, 20);
     c.braking_headroom_q20 = kMark;
     inside::schedule().period = static_cast<std::uint16_t>((k + 9) % 10);
-    schedule_next(&drive);
+    schedule_next(&drive, &inside::schedule());
     drive_control_speed(&drive);
     EXPECT_EQ(inside::time_ms() != kMark, k == 0);
     EXPECT_EQ(c.headroom_q20 != raw(3.0, 20), k == 0) << k;

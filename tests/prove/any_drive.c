@@ -17,6 +17,7 @@
 #include "firmware/sources/flux/flux.h"
 #include "firmware/sources/sources.h"
 #include "firmware/start/flying/look.h"
+#include "firmware/start/step.h"
 #include "firmware/store/store.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_profile.h"
@@ -25,6 +26,7 @@
 drive_t drive;
 flux_observer_t flux_observer;
 board_t board;
+drive_start_t starting;
 uint16_t known_beside;
 int32_t source_deviation_q20;
 void (*volatile drive_onlooker)(void);
@@ -50,8 +52,8 @@ void any_moment(void) {
   drive.heartbeat = any_u16;
   feature_status.loading = any_bool();
   feature_status.store_work = any_up_to(3);
-  drive.found.phase = any_up_to(15);
-  drive.found.sigma_q8 = any_i32;
+  starting.phase = any_up_to(15);
+  starting.sigma_q8 = any_i32;
   drive.config.rpm_per_bpp_q40 = any_i32;
   drive.model.torque_per_accel_q24 = any_i32;
   drive.samples.count = any_up_to(ESTIMATOR_WINDOWS);

@@ -123,6 +123,8 @@ void parameters_reset(void) { any_parameters(); }
 static void any_parts(void) {
   encoder_part.take();  // of the parameters, which are any
   hysteresis_part.take();
+  flying_part.take();
+  start_ways.open_loop = any_bool();
   any_flux(&flux_config);
   paper_config.kp_q30 = any_from(0, 107374182L);
   paper_config.ki_q40 = any_from(0, 220000000L);

@@ -186,9 +186,9 @@ PERIOD = {
         "  d->flags.spins = true;",
         "  d->model = d->config.nameplate;",
         "  frame_turn(&d->control.measured_q20, &v);",
-        "  frame_turn(d->samples.windows, &v);",
+        "  frame_turn(d->position.frames, &v);",
         "  unknown(&d->position.observer);",
-        "  avv_t* const a = &d->position.avv;",
+        "  estimator_frame_t* const f = d->position.frames;",
     ],
 )
 def test_member_of_a_period_that_somebody_else_writes_is_caught(tmp_path: Path, line: str) -> None:

@@ -28,11 +28,12 @@ _SLICED = "firmware/hysteresis/hysteresis.c"  # in the place of windows
 WRITERS: dict[str, tuple[str, ...]] = {
     # Of a period, in the order of the steps.
     "schedule": ("firmware/drive/schedule.c",),
-    "samples": ("firmware/drive/sampling.c", _SLICED, "firmware/drive/position.c"),
+    "samples": ("firmware/drive/sampling.", _SLICED),
     "control.measured_q20": ("firmware/drive/position.c", _SLICED),
     "position.selected": ("firmware/drive/position.c",),
-    "position.seen": ("firmware/start/if_start/",),
+    "position.seen": ("firmware/drive/position.h",),
     "position.seen_q20": ("firmware/drive/position.c",),
+    "position.frames": ("firmware/drive/position.c",),
     "position.torque_accel_q8": ("firmware/drive/position.c",),
     "state": ("firmware/mode/mode.c",),
     "flags": (*_STATES, "firmware/mode/mode.c"),

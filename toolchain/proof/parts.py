@@ -82,7 +82,10 @@ FRAMES = (
 )
 LOOKS = (
     "made/signal_looks.c",
-    *(f"firmware/{folder}/signals.c" for folder in ("board", "sources/flux", "sources/observer", "start/flying")),
+    *(
+        f"firmware/{folder}/signals.c"
+        for folder in ("board", "sources/flux", "sources/observer", "start", "start/flying")
+    ),
 )
 TEXTS = (
     *(

@@ -19,9 +19,17 @@ void encoder_reset(void) {
   source_deviation_q20 = 0;
 }
 
+// Whether AVV is there to be compared with the encoder: it needs active vectors that are long enough to sample in.
+static bool avv_sees(const parameters_t* p) {
+  return p->current_law == CURRENT_LAW_PI && p->flux_beside == 0 && p->excitation != EXCITATION_CENTRED &&
+         p->excitation < EXCITATION_LONG_ZERO;
+}
+
 static void take(void) {
   encoder.trim_bam = (uint32_t)q_mul64(parameters.encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
   encoder.counts_per_turn = parameters.encoder_counts;
+  encoder.beside_flux = parameters.flux_beside > 0;
+  encoder.beside_avv = avv_sees(&parameters);
 }
 
 void encoder_set_up(void) { hal_encoder_init((uint32_t)parameters.encoder_counts); }
@@ -40,7 +48,7 @@ static uint32_t angle_now(const drive_t* d) {
 }
 
 // The present count means the angle in use.
-static void encoder_begin(drive_t* d, bool keeps) {
+static void encoder_begin(const drive_t* d, bool keeps) {
   if (keeps) return;
   const estimator_output_t* const now = &d->position.selected;
   encoder.offset_bam = now->angle_bam - angle_now(d);
@@ -55,12 +63,6 @@ static bool is_reversed(const drive_t* d) {
          q_abs_sat(angle_diff_bam(windows_bam, encoder_bam)) / 2;
 }
 
-// Whether AVV is there to be compared with the encoder: it needs active vectors that are long enough to sample in.
-static bool avv_sees(const drive_t* d) {
-  return d->config.values.current_law == CURRENT_LAW_PI && d->config.values.flux_beside == 0 &&
-         d->config.values.excitation != EXCITATION_CENTRED && d->config.values.excitation < EXCITATION_LONG_ZERO;
-}
-
 static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
   in->frames = 0;
   tracking_observer_t* const o = &encoder.observer;
@@ -68,12 +70,12 @@ static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
   tracking_observer_correct(o, angle_diff_bam(angle_now(d) + encoder.offset_bam, o->angle_bam),
                             d->config.avv.bandwidth_long_q30);
   estimator_output_t out = {o->angle_bam, o->speed_bpp, o->load_accel_q8, 32767};
-  if (d->config.values.flux_beside > 0) {
+  if (encoder.beside_flux) {
     d->position.high = flux_source_look_on(d, in, &out);
   } else {
     source_step_avv(d, in);
   }
-  if (!avv_sees(d)) d->position.high.quality_q15 = 0;  // it looks on, and its angle is no reason for a fault
+  if (!encoder.beside_avv) d->position.high.quality_q15 = 0;  // it looks on, and its angle is no reason for a fault
   d->position.low = out;
   // Behind the observer: turning the frame is no motion of the shaft.
   out.angle_bam += encoder.trim_bam;

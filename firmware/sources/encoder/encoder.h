@@ -13,6 +13,8 @@ typedef struct {
   uint32_t aligned_bam;  // where it was found
   uint32_t trim_bam;     // deliberate turn of its angle
   int32_t counts_per_turn;
+  bool beside_flux;  // which is compared with it, in the place of AVV
+  bool beside_avv;   // which has active vectors that are long enough to sample in
 } encoder_t;
 
 extern encoder_t encoder;

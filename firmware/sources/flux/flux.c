@@ -102,7 +102,7 @@ static flux_period_t period_of(const drive_t* d, bool is_full) {
   return p;
 }
 
-static void flux_begin(drive_t* d, bool keeps) {
+static void flux_begin(const drive_t* d, bool keeps) {
   if (keeps) {
     flux_observer_keep(&flux_observer);
   } else {
@@ -131,7 +131,7 @@ estimator_output_t flux_source_alone(drive_t* d, const estimator_input_t* in) {
   return blend_step(&p->blend, &d->config.blend, &p->low, &p->high);
 }
 
-void flux_source_follow(drive_t* d, const estimator_output_t* now) {
+void flux_source_follow(const drive_t* d, const estimator_output_t* now) {
   flux_observer_preset(&flux_observer, now, d->control.measured_q20);
 }
 
@@ -160,7 +160,7 @@ static excitation_t flux_excitation(const drive_t* d) {
 // While no current flows dead time hides the EMF: within a few volts the motor's voltage is its own, not the commanded
 // one, and an integral of the commanded one does not see it. So some current always flows where the flux has the shaft,
 // below the speed at which the magnet is learnt, and the EMF stands out of that.
-static int32_t observability_current(drive_t* d) {
+static int32_t observability_current(const drive_t* d) {
   const drive_control_t* const c = &d->control;
   const int32_t least_q20 =
       q_min(OBSERVABLE_CURRENTS * d->config.dead_time.edge_band_q20, q_shr(c->current_limit_q20, 1));

@@ -26,7 +26,7 @@ extern flux_observer_config_t flux_config;
 extern const config_part_t flux_part;
 
 /// Sets the flux to what this angle, in whose frame the current is measured, lets expect.
-void flux_source_follow(drive_t* d, const estimator_output_t* now);
+void flux_source_follow(const drive_t* d, const estimator_output_t* now);
 
 estimator_output_t flux_source_alone(drive_t* d, const estimator_input_t* in);
 estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, const estimator_output_t* low);

@@ -123,7 +123,7 @@ static excitation_t paper_excitation(const drive_t* d) {
   return (q_abs_sat(d->position.selected.speed_bpp) < enter_bpp(d)) ? EXCITATION_LONG_ZERO : EXCITATION_EXTENDED;
 }
 
-static void paper_begin(drive_t* d, bool keeps) {
+static void paper_begin(const drive_t* d, bool keeps) {
   if (!keeps) zvv_preset(&paper_zvv, d->position.selected.angle_bam, d->position.selected.speed_bpp, 0);
 }
 

@@ -27,10 +27,10 @@
 flying_start_t flying_start;
 
 // These two listen for the next pulse; who else wants to look begins anew.
-static bool goes_on(const drive_t* d) { return d->found.phase == START_PULSE || d->found.phase == START_CATCH; }
+static bool goes_on(void) { return starting.phase == START_PULSE || starting.phase == START_CATCH; }
 
 static void begin_listen(drive_t* d) {
-  if (!goes_on(d)) {
+  if (!goes_on()) {
     clear(&flying_start, sizeof flying_start);
     flying_start.pause = LISTEN_FIRST;
   }
@@ -38,7 +38,7 @@ static void begin_listen(drive_t* d) {
   d->flags.shorted = true;
   d->flags.caught = false;
   d->control.references.closed = false;
-  start_enter(d, START_LISTEN);
+  start_enter(START_LISTEN);
 }
 
 static start_phase_t step_listen(drive_t* d) {
@@ -48,7 +48,7 @@ static start_phase_t step_listen(drive_t* d) {
 
 static void begin_pulse(drive_t* d) {
   flying_begin(&flying_start.pulse);
-  start_enter(d, START_PULSE);
+  start_enter(START_PULSE);
   start_power(d, true);
 }
 
@@ -85,7 +85,7 @@ static void close_loop(drive_t* d) {
   position_preset_axis(d, rotor->angle_bam, rotor->speed_bpp);
   take_flux(d);
   axis_begin(&starting.axis);
-  d->found.sigma_q8 = rotor->sigma_q8;
+  starting.sigma_q8 = rotor->sigma_q8;
   flying_start.learnt = false;
   flying_start.flux_due = false;
   d->flags.shorted = false;
@@ -185,7 +185,7 @@ static void learn(drive_t* d) {
 
 static void begin_catch(drive_t* d) {
   d->flags.caught = true;
-  start_enter(d, START_CATCH);
+  start_enter(START_CATCH);
 }
 
 // The rotor's half turn is known; the estimators have to follow it with a small error before the drive may run.

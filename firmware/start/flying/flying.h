@@ -4,6 +4,7 @@
 #define STILLSPIN_FIRMWARE_START_FLYING_FLYING_H
 
 #include "estimators/flying.h"
+#include "firmware/interfaces/config_part.h"
 #include "firmware/start/phases.h"
 
 /// One at a time: a look begins it anew.
@@ -20,6 +21,8 @@ typedef struct {
 } flying_start_t;
 
 extern flying_start_t flying_start;
+
+extern const config_part_t flying_part;
 
 extern const phase_t listen_phase, pulse_phase, catch_phase;
 

@@ -18,8 +18,7 @@ if_start_t if_ramp;
 
 static void begin_if_ramp(drive_t* d) {
   if (!start_begin_standstill(d)) return;
-  static const estimator_output_t none = {0, 0, 0, 0};
-  d->position.seen = none;
+  position_look_away(d);
   if_start_begin(&if_ramp, 0, d->control.target_bpp < 0);
   current_controller_reset(&d->control.current);
   d->control.references.closed = true;
@@ -27,7 +26,7 @@ static void begin_if_ramp(drive_t* d) {
   if (drive_source_has(d, SOURCE_HANDS_OVER) && if_ramp_config.speed_bpp > d->config.blend.high_bpp)
     position_bumpless_transfer(d);
   d->flags.open_loop = true;
-  start_enter(d, START_IF_RAMP);
+  start_enter(START_IF_RAMP);
 }
 
 // Whether the source looks on in this period. At rest the angle is the vector's: a saliency has two.
@@ -44,7 +43,11 @@ static bool looks_on(drive_t* d, const if_start_t* ramp) {
 // The control uses the vector's frame.
 static estimator_output_t estimate_if_ramp(drive_t* d, estimator_input_t* in) {
   const if_start_t* const ramp = &if_ramp;
-  d->position.seen = looks_on(d, ramp) ? d->source->step(d, in) : d->position.selected;
+  if (looks_on(d, ramp)) {
+    position_look_on(d, in);
+  } else {
+    position_look_away(d);
+  }
   const estimator_output_t out = {ramp->angle_bam + (uint32_t)ramp->speed_bpp, ramp->speed_bpp, 0, 0};
   return out;
 }

@@ -22,6 +22,9 @@ static packed_text_t make(drive_config_t* c) {
   return fits ? PACKED_NONE : SAY_the_machine_s_parameters_are_too_extreme;
 }
 
-static void take(void) { if_ramp_config = made; }
+static void take(void) {
+  if_ramp_config = made;
+  start_ways.open_loop = parameters.start_method != 0;
+}
 
 const config_part_t if_ramp_part = {make, take, NULL};
