@@ -72,7 +72,6 @@ SECTIONS
                 libstillspin_firmware.a<modulation.*>(.text:_drive_modulate, .text:_modulate_into, .text:_write_frame)
                 libstillspin_firmware.a<mode.*>(.text:_is_energised)
                 libstillspin_firmware.a<observer.*>(.text:_source_observer)
-                libstillspin_firmware.a<signals.*>(.text:_phase_current)
                 libstillspin_firmware.a<scope.*>(.text:_scope_step)
                 libstillspin_firmware.a<hysteresis.*>(.text:_hysteresis_slice)
                 libstillspin_estimators.a<deviation_observer.*>(.text:_deviation_observer_step)
