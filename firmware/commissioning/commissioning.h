@@ -83,6 +83,7 @@ typedef struct {
   uint16_t leg;
   uint32_t angle_bam;  // of the last period
   int32_t tick;
+  int32_t waited;  // for a turn's end, periods
 } spin_t;
 
 typedef struct {

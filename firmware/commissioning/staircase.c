@@ -75,7 +75,8 @@ static void place(const drive_t* d) {
   const int32_t limit = q_min(bearable_q20(), opposite_q20(d));
   s->level_q20 = 0;
   s->step_q20 = 0;
-  if (!place_levels(d, 1, q_min(limit, held_q20()))) {
+  // A rotor without saliency follows: nothing holds it.
+  if (!place_levels(d, 1, commissioning.uniform ? limit : q_min(limit, held_q20()))) {
     (void)place_levels(d, -1, q_min(limit, d->config.values.weakening_limit));
   }
 }

@@ -223,6 +223,22 @@ TEST_F(Phases, TheSpinSumsStationsAndRamps) {
   EXPECT_EQ(inside::model().accel_q12, 654321);
 }
 
+// A brake, or a shaft that is blocked: no turn ever ends, and the current that pulls must.
+TEST_F(Phases, TheSpinOfAShaftThatStandsEnds) {
+  inside::schedule().exclusive = true;
+  inside::selected() = {bam(0.4), 0, 0, 32767};
+  EXPECT_FALSE(step(commissioning_spin));
+  int n = 0;
+  for (; n < 200000; ++n) {
+    EXPECT_FALSE(step(commissioning_spin));
+    if (!inside::flags().spins) break;
+    inside::speed_ramp().value = inside::target_bpp();
+  }
+  EXPECT_NEAR(n, 1000 + 2000 + 2000 + 1000 + 3 * 14000 + 3000 + 6 * 14000, 100) << "each end of a turn is waited for";
+  for (const spin_sums_t& at : commissioning.spin.station) EXPECT_EQ(at.speed, 0);
+  EXPECT_TRUE(commissioning.solve_motion);
+}
+
 // The start's vector brings it to speed and hands it back turning; it is not brought to rest, where nothing holds it.
 TEST_F(Phases, TheSpinOfAShaftThatShowsNoAxisBeginsWithAVector) {
   commissioning.uniform = true;

@@ -237,6 +237,9 @@ TEST_F(CommissioningStairs, TheLevelsPullTheRotor) {
     begin();
     for (const int k : {0, 6, 13}) EXPECT_NEAR(level(k), 14.0 * (0.4 + 0.6 / 13.0 * k), 1e-3) << k;
   }
+  turns_at(6.0);  // by its nameplate; the windows say that there is no saliency
+  begin();
+  EXPECT_NEAR(level(13), 14.0, 1e-3) << "a rotor that follows needs no holding";
 }
 
 // With i_d > 0 the reluctance turns the torque's sign at lambda / (Lq - Ld): the levels end at half of that, and where
