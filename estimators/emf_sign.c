@@ -23,14 +23,6 @@ static int32_t emf_q16(emf_sign_t* s, const machine_model_t* m, const emf_sign_s
 // The power of two next to 32 periods.
 static unsigned shift_of(int32_t periods) { return (periods < 4) ? FILTER_SHIFT : FILTER_SHIFT - 3u; }
 
-static int32_t expected_q16(const machine_model_t* m, int32_t w_q30) {
-  return qc_mul_sat(m->emf_q16, qc_abs_sat(w_q30), 30);
-}
-
-bool emf_sign_is_near(const machine_model_t* m, int32_t speed_bpp) {
-  return expected_q16(m, machine_speed_rad_q30(speed_bpp)) > EMF_MIN_Q16 / 2;
-}
-
 emf_sign_result_t emf_sign_step(emf_sign_t* s, const machine_model_t* m, const emf_sign_seen_t* seen) {
   const int32_t w_q30 = machine_speed_rad_q30(seen->speed_bpp);
   const int32_t e_q16 = emf_q16(s, m, seen, w_q30);
@@ -38,7 +30,7 @@ emf_sign_result_t emf_sign_step(emf_sign_t* s, const machine_model_t* m, const e
   const unsigned shift = shift_of(seen->periods);
   const uint16_t periods = (uint16_t)seen->periods;
   s->seen_q16 = q_follow(s->seen_q16, seen_q16, shift);
-  s->expected_q16 = q_follow(s->expected_q16, expected_q16(m, w_q30), shift);
+  s->expected_q16 = q_follow(s->expected_q16, qc_mul_sat(m->emf_q16, qc_abs_sat(w_q30), 30), shift);
   const bool large = s->expected_q16 > EMF_MIN_Q16;
   s->clear = (large && s->seen_q16 > s->expected_q16 / 2) ? (uint16_t)(s->clear + periods) : 0u;
   s->against = (large && s->seen_q16 < -(s->expected_q16 / 4)) ? (uint16_t)(s->against + periods) : 0u;

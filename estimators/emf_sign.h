@@ -28,9 +28,6 @@ typedef struct {
   int32_t periods;    // since the last time, 1..32
 } emf_sign_seen_t;
 
-/// Whether a speed makes as much as half of the EMF that counts.
-bool emf_sign_is_near(const machine_model_t* m, int32_t speed_bpp);
-
 /// A look in the rotor frame, once in one or several periods.
 emf_sign_result_t emf_sign_step(emf_sign_t* s, const machine_model_t* m, const emf_sign_seen_t* seen);
 

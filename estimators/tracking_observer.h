@@ -27,9 +27,6 @@ static inline void tracking_observer_preset(tracking_observer_t* s, uint32_t ang
 /// Moves on by one period.
 void tracking_observer_predict(tracking_observer_t* s, int32_t torque_accel_q8);
 
-/// Moves on by some periods without a torque.
-void tracking_observer_coast(tracking_observer_t* s, int32_t periods);
-
 /// Corrects with an angle error (measured minus observed); bandwidth_step_q30 = bandwidth * T, below 0.1.
 void tracking_observer_correct(tracking_observer_t* s, int32_t error_bam, int32_t bandwidth_step_q30);
 

@@ -6,15 +6,16 @@
 // synchronism may be faster; then the sign seen so far tells which fault it is.
 //
 // Axis and back-EMF are looked at in slots (schedule.c), once in each round of them: the axis a few periods after the
-// windows were regressed, the back-EMF in the place of the operating point, where the axis turns fast enough for one.
-// Without an axis the back-EMF says nothing: what had been seen of it until then stays.
+// windows were regressed. Without an axis the back-EMF says nothing: what had been seen of it until then stays.
 
 #include "firmware/drive/polarity_watch.h"
 
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 
-#define SUM_PERIODS 64                // of up to 4096 V: a look that comes later sees what is behind them
+#define SUM_END_Q12 1073741824L       // of 64 periods of 4096 V
+#define VOLTS_END_Q12 16777216L       // 4096 V
+#define PERIODS_END 10000L            // a second: a round of the slots is much shorter
 #define WAITED_MAX 32                 // periods: then it is looked behind a renewal, too
 #define BANDWIDTH_STEP_Q30 12884902L  // 120 rad/s * T
 
@@ -30,9 +31,8 @@ void polarity_watch_begin(uint32_t angle_bam, int32_t speed_bpp) {
   polarity_watch_t* const w = &polarity_watch;
   w->open = drive.config.values.polarity_check != 0;
   tracking_observer_preset(&w->axis, angle_bam, speed_bpp, 0);
-  w->axis_at = drive.heartbeat;
-  w->axis_seen_at = drive.heartbeat;
-  w->looks = false;
+  w->axis_periods = 0;
+  w->samples_invalid = false;
   emf_sign_reset(&w->sign);
   forget_voltage(w);
 }
@@ -66,48 +66,38 @@ static dq_t on_axis(dq_t x, rotation_t r) {
   return own;
 }
 
-// What is seen of the back-EMF counts from here.
-static void begin_sums(polarity_watch_t* w, int32_t iq_q20) {
-  w->sign.last_iq_q20 = iq_q20;
-  forget_voltage(w);
-}
-
-// The axis is the one in use for now.
+// The axis is the one in use for now, and the change of the current counts from here.
 static void begin_anew(drive_t* d) {
   polarity_watch_t* const w = &polarity_watch;
   tracking_observer_preset(&w->axis, d->position.selected.angle_bam, d->position.selected.speed_bpp, 0);
   w->axis_then_bam = w->axis.angle_bam;
   w->sign.clear = 0;
   w->sign.against = 0;
-  begin_sums(w, d->control.measured_q20.q);
-}
-
-// The axis as it is now: in between nobody asks for it.
-static void move_axis(const drive_t* d, polarity_watch_t* w) {
-  tracking_observer_coast(&w->axis, (uint16_t)(d->heartbeat - w->axis_at));
-  w->axis_at = d->heartbeat;
+  w->sign.last_iq_q20 = d->control.measured_q20.q;
+  forget_voltage(w);
 }
 
 // Takes the error that was seen once for every period since the last time.
 static void follow_axis(drive_t* d) {
   polarity_watch_t* const w = &polarity_watch;
-  const int32_t periods = (uint16_t)(d->heartbeat - w->axis_seen_at);
-  w->axis_seen_at = d->heartbeat;
-  move_axis(d, w);
-  const bool invalid = samples_are_invalid(d);
-  if (invalid) {
+  const int32_t periods = w->axis_periods;
+  w->axis_periods = 0;
+  w->samples_invalid = samples_are_invalid(d);
+  if (w->samples_invalid) {
     begin_anew(d);
   } else if (d->samples.count > 0u) {
     tracking_observer_correct(&w->axis, q_sat64(q_product(axis_off(d), periods)), BANDWIDTH_STEP_Q30);
   }
-  w->looks = !invalid && emf_sign_is_near(&d->model, w->axis.speed_bpp);
+}
+
+static int32_t mean_volts_q16(int32_t sum_q12, int32_t periods) {
+  return q_limit(sum_q12 / periods, VOLTS_END_Q12) * 16;
 }
 
 static emf_sign_result_t look(drive_t* d) {
   polarity_watch_t* const w = &polarity_watch;
-  move_axis(d, w);
   const rotation_t r = frame_rotation(d->position.selected.angle_bam - w->axis.angle_bam);
-  const dq_t mean_q16 = {w->voltage_q12.d / w->periods * 16, w->voltage_q12.q / w->periods * 16};
+  const dq_t mean_q16 = {mean_volts_q16(w->voltage_q12.d, w->periods), mean_volts_q16(w->voltage_q12.q, w->periods)};
   // A look that was late counts as one of 32 periods: the sign has to be seen twice.
   const emf_sign_seen_t seen = {on_axis(mean_q16, r), on_axis(d->control.measured_q20, r), w->axis.speed_bpp,
                                 q_min(w->periods, WAITED_MAX)};
@@ -116,28 +106,30 @@ static emf_sign_result_t look(drive_t* d) {
 
 void polarity_watch_end(void) { polarity_watch.open = false; }
 
-// Commands are within 4096 V (CURRENT_COMMAND_END_Q16).
-static void gather(const drive_t* d, polarity_watch_t* w) {
-  if (w->periods >= SUM_PERIODS) begin_sums(w, d->control.measured_q20.q);
-  w->voltage_q12.d += q_shr(d->control.command_q16.d, 4);
-  w->voltage_q12.q += q_shr(d->control.command_q16.q, 4);
-  w->periods++;
-}
-
 bool polarity_watch_step(drive_t* d) {
   polarity_watch_t* const w = &polarity_watch;
   if (!polarity_watch_is_awake(d)) return false;
-  gather(d, w);
+  tracking_observer_predict(&w->axis, 0);
+  w->voltage_q12.d = q_limit(w->voltage_q12.d + q_shr(d->control.command_q16.d, 4), SUM_END_Q12);
+  w->voltage_q12.q = q_limit(w->voltage_q12.q + q_shr(d->control.command_q16.q, 4), SUM_END_Q12);
+  w->periods = q_min(w->periods + 1, PERIODS_END);
+  w->axis_periods = q_min(w->axis_periods + 1, PERIODS_END);
   const schedule_slot_t slot = d->schedule.slot;
-  if (slot == SLOT_LOOK) follow_axis(d);
-  if (slot == SLOT_REGRESSION) {
-    move_axis(d, w);
-    w->axis_then_bam = w->axis.angle_bam;
+  if (slot == SLOT_LOOK) {
+    follow_axis(d);
+    return false;
   }
-  if (!polarity_watch_takes_slot(d)) return false;
-  // Not where the observer has renewed its covariance, unless that goes on.
+  // The back-EMF's slot is one with room: with three windows the match of the voltage, which rests meanwhile
+  // (learning.c), with two the regression. Not where the observer has renewed its covariance, unless that goes on.
+  const bool full = d->samples.count >= ESTIMATOR_WINDOWS;
+  if (slot == SLOT_REGRESSION) {
+    w->axis_then_bam = w->axis.angle_bam;
+    if (full) return false;
+  } else if (slot != SLOT_VOLTAGE || !full) {
+    return false;
+  }
   const bool renewed = d->position.observer.gathered.periods == 0 && drive_source_has(d, SOURCE_OBSERVES);
-  if (renewed && w->periods < WAITED_MAX) return false;
+  if (w->samples_invalid || (renewed && w->periods < WAITED_MAX)) return false;
   const emf_sign_result_t sign = look(d);
   forget_voltage(w);
   if (sign != EMF_SIGN_OPEN) w->open = false;

@@ -11,9 +11,8 @@ typedef struct {
   bool open;  // not answered since the start
   tracking_observer_t axis;
   uint32_t axis_then_bam;  // where it was when the windows were last regressed
-  uint16_t axis_at;        // of which period it is
-  uint16_t axis_seen_at;   // and when it was last corrected
-  bool looks;              // it is seen and turns fast enough for a back-EMF
+  int32_t axis_periods;    // since it was last corrected
+  bool samples_invalid;    // when it was to be seen
   emf_sign_t sign;
   dq_t voltage_q12;  // sum of the commands since the back-EMF was last looked at, V
   int32_t periods;   // that long ago
@@ -27,9 +26,5 @@ void polarity_watch_end(void);
 bool polarity_watch_step(drive_t* d);
 bool polarity_watch_suspects(void);
 static inline bool polarity_watch_is_awake(const drive_t* d) { return polarity_watch.open && d->state == DRIVE_RUN; }
-/// The back-EMF is looked at in the place of the operating point.
-static inline bool polarity_watch_takes_slot(const drive_t* d) {
-  return d->schedule.slot == SLOT_OPERATING_POINT && polarity_watch.looks && polarity_watch_is_awake(d);
-}
 
 #endif

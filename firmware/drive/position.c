@@ -93,8 +93,7 @@ void drive_estimate(drive_t* d) {
   if (count > 0u) measure_current(d, first);
   // With the gates off the windows are no answer to the pattern's voltages.
   if (starting && (d->flags.gates_off || !drive_is_energised())) return;
-  const bool has_slot = is_slot(d, SLOT_OPERATING_POINT) && !polarity_watch_takes_slot(d);
-  const bool moves = (d->schedule.moves || has_slot) && !d->flags.frozen;
+  const bool moves = (d->schedule.moves || is_slot(d, SLOT_OPERATING_POINT)) && !d->flags.frozen;
   if (moves) machine_model_follow(&d->model, d->control.measured_q20.q);
   const bool turns = is_slot(d, SLOT_LOOK) && !polarity_watch_is_awake(d) && !d->flags.frozen;
   if (turns) machine_model_renew_sensitivity(&d->model);

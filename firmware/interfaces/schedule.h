@@ -26,11 +26,11 @@
 #include <stdint.h>
 
 typedef enum {
-  SLOT_REGRESSION = 0,       // the windows on their voltages
-  SLOT_LOOK = 1,             // near enough to learn from? The model's K, or the polarity's watch follows the axis
-  SLOT_INDUCTANCE = 2,       // inverse inductances and match of the sensors
-  SLOT_VOLTAGE = 3,          // resistance and flux, before the drive runs the sensors
-  SLOT_OPERATING_POINT = 4,  // the model moves to it, or the polarity's watch looks at the back-EMF
+  SLOT_REGRESSION = 0,  // the windows on their voltages; of fewer than three the watch looks at the back-EMF, too
+  SLOT_LOOK = 1,        // is that near enough to learn from? The model's K, or the polarity's watch follows the axis
+  SLOT_INDUCTANCE = 2,  // inverse inductances and match of the sensors
+  SLOT_VOLTAGE = 3,     // resistance and flux, before the drive runs the sensors; with three windows the watch looks
+  SLOT_OPERATING_POINT = 4,  // the model moves to the operating point
   SCHEDULE_SLOTS = 5         // and none of them
 } schedule_slot_t;
 

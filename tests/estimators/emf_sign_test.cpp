@@ -64,15 +64,6 @@ TEST(EmfSign, BelowTenVoltsItDoesNotAnswer) {
   }
 }
 
-// Worth a look is what makes as much as half of that.
-TEST(EmfSign, IsNearFromFiveVolts) {
-  const Motor m;
-  const machine_model_t model = model_of(m);
-  for (const double volts : {0.0, 4.9, 5.1, -4.9, -5.1, 300.0, -300.0}) {
-    EXPECT_EQ(emf_sign_is_near(&model, bpp(volts / m.flux)), std::abs(volts) > 5.0) << volts;
-  }
-}
-
 // More than half of the EMF expected is right, more than a quarter of it against the rotation reversed.
 TEST(EmfSign, AnEmfBetweenTheTwoIsNoAnswer) {
   const Motor m;

@@ -43,23 +43,6 @@ TEST(TrackingObserver, AnAngleErrorDecaysWithTheTriplePole) {
   EXPECT_NEAR(rad(error_bam(0.0, s)), 0.0, 1e-5 * start);  // a t = 18
 }
 
-// Without a torque some periods at once are as many one by one, to their roundings.
-TEST(TrackingObserver, CoastsAsFarAsPeriodByPeriod) {
-  for (const double load : {0.0, 3.0, -3.0}) {
-    for (const int periods : {1, 2, 17, 200}) {
-      tracking_observer_t s, one;
-      tracking_observer_preset(&s, bam(0.3), bpp(50.0), raw(load * 1e5, 8));
-      one = s;
-      for (int n = 0; n < periods; ++n) tracking_observer_predict(&one, 0);
-      tracking_observer_coast(&s, periods);
-      EXPECT_EQ(s.speed_bpp, one.speed_bpp) << load;
-      EXPECT_EQ(s.speed_remainder_q8, one.speed_remainder_q8) << load;
-      EXPECT_NEAR(rad(angle_diff_bam(s.angle_bam, one.angle_bam)), 0.0, 1e-6) << load << ", " << periods;
-      EXPECT_EQ(s.load_accel_q8, raw(load * 1e5, 8));
-    }
-  }
-}
-
 // The same recursion in double precision, with everything moving.
 TEST(TrackingObserver, AgreesWithDoublePrecision) {
   Random random(40);

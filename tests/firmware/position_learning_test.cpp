@@ -5,6 +5,7 @@
 extern "C" {
 #include "firmware/commissioning/commissioning.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/polarity_watch.h"
 #include "firmware/mode/states.h"
 }
 
@@ -50,6 +51,19 @@ TEST_F(Learning, ADriveThatRunsLearnsEachInItsTurn) {
         EXPECT_EQ(sensors(), near && slot == SLOT_INDUCTANCE && alternating) << slot << "all directions, or none";
         EXPECT_EQ(voltage(), near && slot == SLOT_VOLTAGE) << slot;
       }
+    }
+  }
+}
+
+// A period with three windows has no room for the polarity's watch beside it.
+TEST_F(Learning, TheWatchTakesTheVoltagesTurnOfAFullPeriod) {
+  for (const std::uint16_t count : {2, 3}) {
+    for (const bool watched : {true, false}) {
+      learn_with(POSITION_OBSERVER);
+      see(count);
+      polarity_watch.open = watched;
+      estimate(SLOT_VOLTAGE);
+      EXPECT_EQ(voltage(), !(watched && count == 3));
     }
   }
 }

@@ -108,8 +108,7 @@ TEST_F(Sources, WhileAVectorIsTurnedTheTorqueIsThatOfTheAngleSeen) {
   EXPECT_EQ(inside::torque_accel_q8(), 0);
 }
 
-// The model moves where the schedule says so or has its slot, unless the back-EMF is looked at there, and makes K of
-// the rest in the look's slot.
+// The model moves where the schedule says so or has its slot, and makes K of the rest in the look's slot.
 TEST_F(Sources, TheModelFollowsWhereItHasItsPeriod) {
   for (int slot = 0; slot <= SCHEDULE_SLOTS; ++slot) {
     for (const bool moves : {false, true}) {
@@ -118,7 +117,6 @@ TEST_F(Sources, TheModelFollowsWhereItHasItsPeriod) {
         see(0);
         inside::model() = inside::config().nameplate;
         polarity_watch.open = watched;
-        polarity_watch.looks = true;
         inside::schedule().moves = moves;
         inside::current_dq_q20().q = raw(2.5, 20);
         const std::int32_t k = inside::model().k_dq_q24;
@@ -126,7 +124,7 @@ TEST_F(Sources, TheModelFollowsWhereItHasItsPeriod) {
         inside::observer().is_sensitive = true;
         inside::observer().sensitivity = {};
         estimate(static_cast<schedule_slot_t>(slot));
-        const bool follows = moves || (slot == SLOT_OPERATING_POINT && !watched);
+        const bool follows = moves || slot == SLOT_OPERATING_POINT;
         EXPECT_EQ(inside::model().iq_q20, follows ? raw(2.5, 20) : 0) << slot << moves;
         EXPECT_EQ(inside::model().k_dq_q24 == k, slot == SLOT_LOOK && !watched) << slot << watched;
         see(1);

@@ -302,7 +302,7 @@ TEST_F(Protection, AReversedBackEmfIsThePolarity) {
     trust_synchronism();
     const std::int32_t speed = bpp_of(600);  // 40 V
     polarity_watch.open = true;
-    polarity_watch.looks = true;
+    polarity_watch.samples_invalid = false;
     inside::selected().speed_bpp = polarity_watch.axis.speed_bpp = speed;
     polarity_watch.axis.angle_bam = inside::selected().angle_bam;
     inside::current_dq_q20() = {0, 0};
@@ -310,8 +310,7 @@ TEST_F(Protection, AReversedBackEmfIsThePolarity) {
     int n = 0;
     for (; n < 400 && polarity_watch.open && inside::state() == DRIVE_RUN; ++n) {
       inside::schedule().slot =
-          n % 5 == 0 ? SLOT_OPERATING_POINT : SCHEDULE_SLOTS;  // the back-EMF's place in the turn, and none
-      ++inside::heartbeat();
+          n % 5 == 0 ? SLOT_REGRESSION : SCHEDULE_SLOTS;  // the back-EMF's place in the turn, and none
       inside::selected().angle_bam += static_cast<std::uint32_t>(speed);
       drive_protect(&drive);
     }
@@ -346,7 +345,7 @@ TEST_F(Protection, ALossWithAReversedEmfIsThePolarity) {
       board.encoder = (board.encoder + 4u) & 4095u;
       inside::avv().observer.angle_bam = encoder.observer.angle_bam;
       polarity_watch.open = open;
-      polarity_watch.looks = false;  // it has no say of its own for now
+      polarity_watch.samples_invalid = true;  // it has no say of its own for now
       polarity_watch.sign.expected_q16 = raw(8.0, 16);
       polarity_watch.sign.seen_q16 = raw(-3.0, 16);
     });

@@ -71,12 +71,11 @@ SECTIONS
                 libstillspin_firmware.a<current.*>(.text:_drive_control_current)
                 libstillspin_firmware.a<modulation.*>(.text:_drive_modulate, .text:_modulate_into, .text:_write_frame)
                 libstillspin_firmware.a<mode.*>(.text:_is_energised)
-                libstillspin_firmware.a<observer.*>(.text:_source_observer)
-                libstillspin_firmware.a<scope.*>(.text:_scope_step)
                 libstillspin_firmware.a<hysteresis.*>(.text:_hysteresis_slice)
                 libstillspin_estimators.a<deviation_observer.*>(.text:_deviation_observer_step)
                 libstillspin_estimators.a<regression.*>(.text:_regression_evaluate)
-                libstillspin_estimators.a<deviation.*>(.text:_deviation_frames, .text:_deviation_model)
+                libstillspin_estimators.a<deviation.*>(.text)
+                libstillspin_qmath.a<qsum.*>(.text)
               } LOAD = APP, RUN = RAM_CODE, PAGE = 0,
               LOAD_START(_image_ram_code_load), RUN_START(_image_ram_code_run), SIZE(_image_ram_code_size)
   quotients : { rts2800_ml.lib<ll_div*>(.text) } > APP, PAGE = 0
