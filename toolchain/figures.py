@@ -81,6 +81,7 @@ STEPS = (
     *PAPERS,
     Step("flux-beside", "reproduce S07 S08 S09 S10 S11 --no-paper-scheme --no-nameplate --out OUT", is_long=True),
     Step("startup", "startup-matrix --out OUT", is_long=True),
+    Step("type-test", "type-test --catalogue --few --out OUT", is_long=True),
     Step("hil-serial", "hil all --check --port virtual --jobs 2 --json OUT/hil.json --resume", is_long=True),
     Step("hil-can", "hil all --check --can virtual --jobs 2 --json OUT/hil.json --resume", is_long=True),
     Step(

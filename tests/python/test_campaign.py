@@ -182,6 +182,19 @@ def test_the_true_shaft_and_who_was_first_decide(result, end, off, words):
 # ---- what a failure is shrunk to
 
 
+def test_a_speed_may_be_judged_by_its_mean():
+    def shaken(time):
+        return 100.0 + 15.0 * np.sin(2.0 * np.pi * 50.0 * time)
+
+    time = ended().signals["time"]
+    shaking = ended()
+    shaking.signals["true_speed"] = shaken(time)
+    assert judged(shaking, ASKED).end is End.FAILED
+    assert judged(shaking, ASKED, 0.1).end is End.GOOD
+    shaking.signals["true_speed"] = shaken(time) + 12.0
+    assert judged(shaking, ASKED, 0.1).end is End.FAILED
+
+
 def test_only_what_a_failure_needs_is_left_and_no_more_of_it_than_it_needs():
     rolls = random.Random(3)
     for _ in range(50):

@@ -38,6 +38,7 @@ BAD = {
     "commission": ("commission", "--profile", "bnch"),
     "board": ("board", "--profile", "bnch"),
     "startup-matrix": ("startup-matrix", "--way", "sideways"),
+    "type-test": ("type-test", "none.toml"),
     "round-trips": ("round-trips", "--runs", "0"),
     "campaign": ("campaign", "--motors", "A,"),
     "params dump": ("params", "dump"),

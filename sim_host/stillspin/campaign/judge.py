@@ -56,8 +56,14 @@ class Verdict:
         return self.failed and self.off is not None and self.off <= CAUGHT
 
 
-def judged(result: NativeResult, run: Run) -> Verdict:
-    """What became of a run; the drive's fault ends it, so what the shaft did afterwards is not judged."""
+def judged(result: NativeResult, run: Run, mean: float = 0.0) -> Verdict:
+    """What became of a run; the drive's fault ends it, so what the shaft did afterwards is not judged.
+
+    Args:
+        result: of the run.
+        run: what was asked for.
+        mean: s that the true speed is averaged over; 0 for not.
+    """
     fault = result.faults[0] if result.faults else None
     if result.reason.startswith(_IN_WORDS):
         return Verdict(End.REFUSED, result.reason.removeprefix(_IN_WORDS[0]))
@@ -66,7 +72,7 @@ def judged(result: NativeResult, run: Run) -> Verdict:
         return Verdict(End.FAILED, result.reason or "nothing was recorded")
     signals = _whole(signals, fault[0] if fault else np.inf)
     error = _error(signals)
-    wrong = _first_wrong(signals, run)
+    wrong = _first_wrong(_averaged(signals, mean), run)
     if wrong:
         off = round(fault[0] - wrong[0], 4) if fault else None
         return Verdict(End.FAILED, f"{wrong[1]}; {fault[1] if fault else 'the drive ran on'}", wrong[0], off, error)
@@ -75,6 +81,17 @@ def judged(result: NativeResult, run: Run) -> Verdict:
     if not result.completed:
         return Verdict(End.FAILED, result.reason or "broken off without a reason", error=error)
     return Verdict(End.GOOD, error=error)
+
+
+def _averaged(signals: Signals, seconds: float) -> Signals:
+    """With the mean of the true speed over so long, up to each instant; less long at the beginning."""
+    time, speed = as_floats(signals["time"]), as_floats(signals["true_speed"])
+    if seconds <= 0.0 or time.size < 2:
+        return signals
+    sums = np.concatenate(([0.0], np.cumsum(speed)))
+    first = np.searchsorted(time, time - seconds + 0.5 * (time[1] - time[0]))
+    count = np.arange(1, time.size + 1) - first
+    return {**signals, "true_speed": (sums[1:] - sums[first]) / count}
 
 
 def _whole(signals: Signals, end: float) -> Signals:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
@@ -11,11 +12,14 @@ from stillspin import core, resources
 from stillspin.campaign import duty
 from stillspin.campaign.draw import Unit
 from stillspin.cases import profile, variant
+from stillspin.counted import counted
 from stillspin.entry import Entry
 from stillspin.errors import CampaignError, InputError
 from stillspin.revision import revision
 from stillspin.runs import commission
 from stillspin.runs.execute import Settings
+from stillspin.runs.reporting import report
+from stillspin.runs.workers import Task, Where, workers
 
 _PROFILES, _USUAL = "motors/profiles", "bench"
 """Where motors have profiles of their own, and what the others get."""
@@ -81,16 +85,24 @@ def nominal(wish: Wish) -> list[Unit]:
     return units
 
 
-def told(wish: Wish, units: Sequence[Unit], progress: Progress) -> Told:
+def told(wish: Wish, units: Sequence[Unit], progress: Progress, where: Where) -> Told:
     """Their drives told what they find out on the nominal unit, too, where that is wanted.
 
     The same parameters then serve all units of a motor: in what these differ the drive is not told.
+
+    Raises:
+        CampaignError: a worker has died.
     """
     found = Told(list(units))
-    for number, unit in enumerate(units):
+    for unit in units:
         profile.say_not_stated(unit.plate)
-        if wish.commission and not wish.params and unit.plate.commission and not unit.refusal:
-            found.units[number] = _in_scheme(wish, _commissioned(unit, found, progress))
+    wanted = wish.commission and not wish.params
+    todo = [number for number, unit in enumerate(units) if wanted and unit.plate.commission and not unit.refusal]
+    if todo:
+        with progress() as show:
+            results = _commissioned([units[number] for number in todo], where, show)
+        for number, result in zip(todo, results, strict=True):
+            found.units[number] = _in_scheme(wish, _told(units[number], result, found))
     return found
 
 
@@ -135,14 +147,37 @@ def _with(unit: Unit, parameters: dict[str, float]) -> Unit:
     return replace(unit, settings=replace(unit.settings, profile=changed))
 
 
-def _commissioned(unit: Unit, found: Told, progress: Progress) -> Unit:
-    """On the plain unit, as its scheme is no business of the commissioning."""
+def _commissioned(units: Sequence[Unit], where: Where, show: Show) -> list[commission.Result | str]:
+    """What each finds out on the plain unit, as its scheme is no business of that; or why it broke off."""
+    if len(units) == 1:
+        return [_commission(units[0], show)]
+
+    def watch(shares: Sequence[float]) -> None:
+        show(sum(shares) / len(units), counted(len(units), "motor"))
+
+    found: dict[int, commission.Result | str] = {}
+    with workers(where, len(units), watch) as crew:
+        tasks = deque(Task(_reported, (unit, number), number) for number, unit in enumerate(units))
+        for task, result in crew.finished(tasks):
+            found[task.tag] = result
+    return [found[number] for number in range(len(units))]
+
+
+def _reported(unit: Unit, slot: int) -> commission.Result | str:
+    return _commission(unit, lambda share, _: report(slot, share))
+
+
+def _commission(unit: Unit, show: Show) -> commission.Result | str:
     settings = unit.settings
     try:
-        with progress() as show:
-            result = commission.run(core.load(), unit.plate, settings.changes, settings.seed, show)
+        return commission.run(core.load(), unit.plate, settings.changes, settings.seed, show)
     except CampaignError as error:
-        return replace(unit, refusal=str(error))
+        return str(error)
+
+
+def _told(unit: Unit, result: commission.Result | str, found: Told) -> Unit:
+    if isinstance(result, str):
+        return replace(unit, refusal=result)
     found.found[unit.motor] = result
     found.doubted += [f"motor {unit.motor}: {value.name} keeps its value: {value.words}" for value in result.refused]
     return _with(unit, {**unit.plate.parameters, **result.told})

@@ -17,6 +17,7 @@ _PLACES = {
     "commission": "commission.commission",
     "board": "board.board",
     "startup-matrix": "startup.startup_matrix",
+    "type-test": "type_test.type_test",
     "round-trips": "round_trips.round_trips",
     "campaign": "campaign.campaign",
     "console": "console.console",

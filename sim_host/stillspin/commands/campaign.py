@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -16,14 +15,14 @@ from stillspin.campaign import carry_out, directory, faults, results, spread, ta
 from stillspin.campaign.draw import Case, Drawer, Unit
 from stillspin.campaign.judge import End, Verdict
 from stillspin.campaign.results import Row
-from stillspin.commands.campaign_options import CampaignOptions, with_campaign_options
+from stillspin.commands.campaign_options import CampaignOptions, bar, is_default, with_campaign_options
 from stillspin.counted import counted
 from stillspin.drive.own import firmware
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.options import CommissionOption, number, whole
 from stillspin.report import junit, output
-from stillspin.report.progress import Counter, PhaseBar
+from stillspin.report.progress import Counter
 from stillspin.revision import revision
 from stillspin.runs.workers import Where
 
@@ -125,7 +124,7 @@ def campaign(
     wish = units.Wish(
         named_motors,
         common.seed,
-        None if _is_default(context, "profile_name") else common.profile_name,
+        None if is_default(context, "profile_name") else common.profile_name,
         firmware(),
         common.changes,
         common.params,
@@ -139,7 +138,7 @@ def campaign(
     numbers = sorted(set(case)) if case else range(1, count + 1)
     wanted = [(motor, each) for motor in named_motors for each in numbers]
     with junit.Report(common.junit_file, NAME, firmware) as verdicts, output.fresh_directory(out) as place:
-        told = units.told(wish, plain, _bar)
+        told = units.told(wish, plain, bar, common.where)
         named = {unit.motor: unit for unit in told.units}
         todo = [(named[motor], drawer.case(each)) for motor, each in wanted if (motor, each) not in kept.rows]
         try:
@@ -156,12 +155,6 @@ def campaign(
     print(f"see {out / output.MARK} and {out / directory.CASES}")
     if len(failed) > may_fail or told.doubted or tally.tally(tally.plain(rows)).refused_share > may_refuse:
         raise typer.Exit(ExitCode.SHORT)
-
-
-def _is_default(context: typer.Context, name: str) -> bool:
-    """Whether nobody has given the option."""
-    source = context.get_parameter_source(name)
-    return source is not None and source.name == "DEFAULT"
 
 
 def _motors(words: Sequence[str]) -> list[str]:
@@ -185,12 +178,6 @@ def _about(wish: units.Wish, plain: Sequence[Unit], drawer: Drawer) -> dict[str,
         "drawn_from": drawer.mark,
         "units": {unit.motor: unit.mark for unit in plain},
     }
-
-
-@contextmanager
-def _bar() -> Iterator[units.Show]:
-    with PhaseBar(Console(stderr=True)) as bar:
-        yield bar.show
 
 
 def _run(todo: Sequence[tuple[Unit, Case]], drawer: Drawer, where: Where, kept: results.Results) -> None:

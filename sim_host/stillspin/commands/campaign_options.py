@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
+import typer
+from rich.console import Console
+
+from stillspin.campaign.units import Show
 from stillspin.options import (
     ChangeOption,
     ClusterOption,
@@ -19,6 +24,7 @@ from stillspin.options import (
     processors,
 )
 from stillspin.report.junit import JunitOption
+from stillspin.report.progress import PhaseBar
 from stillspin.runs.workers import Where
 
 
@@ -61,3 +67,16 @@ def with_campaign_options(command: Callable[..., None]) -> Callable[..., None]:
     called.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
     called.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
     return called
+
+
+def is_default(context: typer.Context, name: str) -> bool:
+    """Whether nobody has given the option."""
+    source = context.get_parameter_source(name)
+    return source is not None and source.name == "DEFAULT"
+
+
+@contextmanager
+def bar() -> Iterator[Show]:
+    """How far a commissioning is, on the terminal."""
+    with PhaseBar(Console(stderr=True)) as drawn:
+        yield drawn.show
