@@ -23,8 +23,9 @@ static int32_t for_fit(int32_t x) { return q_limit(x, FIT_END); }
 
 static int32_t mean_of(int64_t sum, int32_t count) { return for_fit(fit_ratio(sum, count, 0)); }
 
-// The link falls under the vector along the current and rises under its opposite. Next to all of a period is under
-// either: what the windows see of it is missing in the mean, too.
+// The link falls under the vector along the current and rises under its opposite. Where its own time constant is about
+// a pulse, the mean misses this, and the windows, which are behind the pulses' beginnings, twice as much; where it is
+// much longer there is little of it.
 static int32_t sag_q20(const staircase_level_t* l) {
   return for_fit(q_div(fit_ratio(l->sag, l->periods, 0), l->link_q16, 24));
 }

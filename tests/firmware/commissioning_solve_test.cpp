@@ -153,8 +153,8 @@ TEST(CommissioningStaircase, LevelsThatLieOffAreNoLine) {
   EXPECT_LT(real(v.window_rms_q16, 16), 1e-2 * off) << "both scatter alike";
 }
 
-// A link that gives way in proportion to the current is no resistance of the machine: the mean is missing what the
-// windows are, and what is taken for a drop is the same as without.
+// A link that gives way in proportion to the current is no resistance of the machine: the mean misses it once and the
+// windows twice, and what is taken for a drop is the same as without.
 TEST(CommissioningStaircase, TheSagOfTheLinkIsNoResistance) {
   const machine_model_t m = nameplate();
   const double slope = 0.04;  // V per A, of one vector against the other

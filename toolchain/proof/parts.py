@@ -82,10 +82,7 @@ FRAMES = (
 )
 LOOKS = (
     "made/signal_looks.c",
-    *(
-        f"firmware/{folder}/signals.c"
-        for folder in ("board", "sources/flux", "sources/observer", "start", "start/flying")
-    ),
+    *(f"firmware/{at}/signals.c" for at in ("board", "sources/flux", "sources/observer", "start", "start/flying")),
 )
 TEXTS = (
     *(

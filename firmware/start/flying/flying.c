@@ -165,7 +165,7 @@ static void carry_on(drive_t* d, int32_t axis_bam) {
   position_preset_axis(d, rotor->angle_bam, rotor->speed_bpp);
 }
 
-// Where no saliency shows the axis there is nothing to learn and nothing to watch: the pulses' word is the last.
+// A start that asks no saliency for the axis has nothing to learn and nothing to watch: the pulses' word is the last.
 static start_phase_t run_at_once(drive_t* d) {
   carry_on(d, 0);
   const bool ready = d->flags.invalid == 0u && start_has_exclusive_slot(d);

@@ -31,27 +31,27 @@ class Duty:
     @property
     def duration(self) -> float:
         """Seconds from the end of the start procedure."""
-        return _time(self._back + 2.0 * self.ramp + _SETTLE + _HELD)
+        return whole_periods(self._back + 2.0 * self.ramp + _SETTLE + _HELD)
 
     @property
     def _load_at(self) -> float:
-        return _time(_BEGIN + self.ramp + _LOADED)
+        return whole_periods(_BEGIN + self.ramp + _LOADED)
 
     @property
     def _back(self) -> float:
-        return _time(self._load_at + _SETTLE + _HELD)
+        return whole_periods(self._load_at + _SETTLE + _HELD)
 
     def run(self, name: str, load: float) -> Run:
         """As a run of a scenario. `load`: share of the rated torque, against the first direction."""
-        held = _time(self._load_at + _SETTLE), _time(self._back - _MARGIN)
-        end = _time(self.duration - _HELD), self.duration
+        held = whole_periods(self._load_at + _SETTLE), whole_periods(self._back - _MARGIN)
+        end = whole_periods(self.duration - _HELD), self.duration
         return Run(
             name=name,
             title="",
             duration=self.duration,
             max_start=3.0,
             commands=((_BEGIN, "speed_ref_rpm", self.speed), (self._back, "speed_ref_rpm", -self.speed)),
-            load=((self._load_at, 0.0), (_time(self._load_at + _STEP), round(load * self.torque, 6))),
+            load=((self._load_at, 0.0), (whole_periods(self._load_at + _STEP), round(load * self.torque, 6))),
             parameters={},
             plant={"solver": {"method": "rk4"}},
             reached=(Reached(held, _BAND * self.speed), Reached(end, _BAND * self.speed)),
@@ -59,7 +59,8 @@ class Duty:
         )
 
 
-def _time(seconds: float) -> float:
+def whole_periods(seconds: float) -> float:
+    """To the control period, 0.1 ms."""
     return round(seconds, 4)
 
 

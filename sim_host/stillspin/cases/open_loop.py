@@ -28,7 +28,7 @@ def share(inductance_d: float, inductance_q: float) -> float:
 
 def spin_most(volts: float, flux: float, pairs: float) -> float:
     """The speed of the commissioning's spin, rpm, up to which its pulses alternate, with or without saliency."""
-    return _rpm(_SPIN_SHARE * volts / flux / pairs)
+    return rpm(_SPIN_SHARE * volts / flux / pairs)
 
 
 def following(told: Mapping[str, float], volts: float) -> dict[str, float]:
@@ -48,11 +48,11 @@ def following(told: Mapping[str, float], volts: float) -> dict[str, float]:
     rated = told.get("rated_current") or limit / 2.0
     current = min(rated, limit, _FLUX_SHARE * flux / (told["inductance_q"] * 1e-3))
     fastest = min(_SPEEDS[1], told["speed_limit"] / 3.0)
-    speed = min(max(_rpm(_EMF_SHARE * volts / flux / pairs), _SPEEDS[0]), fastest)
+    speed = min(max(rpm(_EMF_SHARE * volts / flux / pairs), _SPEEDS[0]), fastest)
     torque = 1.5 * pairs * flux * current
     ramp = _RAMP_MOST
     if told.get("inertia"):
-        ramp = min(ramp, _TORQUE_SHARE * _rpm(torque / told["inertia"]))
+        ramp = min(ramp, _TORQUE_SHARE * rpm(torque / told["inertia"]))
     slope = min(speed / _RISE_TIME, ramp)
     spin = min(max(_SPIN_SHARE / _EMF_SHARE * speed, _SPIN[0]), _SPIN[1])
     return {
@@ -65,5 +65,6 @@ def following(told: Mapping[str, float], volts: float) -> dict[str, float]:
     }
 
 
-def _rpm(speed: float) -> float:
+def rpm(speed: float) -> float:
+    """Of rad/s."""
     return speed * 30.0 / math.pi

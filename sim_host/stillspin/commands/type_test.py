@@ -83,7 +83,7 @@ def type_test(
             for unit in told.units
         ]
         _write(place, wish, told, rows, found)
-    tables.type_test(found)
+    tables.type_test(row for one in found for row in one.rows())
     _say(rows, found)
     print(f"see {out / output.MARK} and {out / CASES}")
     if any(one.failed for one in found):

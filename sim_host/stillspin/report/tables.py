@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Console
@@ -25,9 +24,6 @@ from stillspin.report import page as report
 from stillspin.report.explanation import Explanation
 from stillspin.runs import commission
 from stillspin.runs.assess import ScenarioResult
-
-if TYPE_CHECKING:
-    from stillspin.type_test.findings import Finding
 
 _COLOURS = {"met": "green", "missed": "red", "no value": "red", "": ""}
 _RIGHT = {
@@ -188,18 +184,11 @@ def startup(rows: Iterable[tuple[str, ...]]) -> None:
     _print(table)
 
 
-def type_test(found: Iterable[Finding]) -> None:
-    """What a type test found, a row for each motor's values and one for each kind of duty."""
+def type_test(rows: Iterable[tuple[str, ...]]) -> None:
+    """What a type test found, motor by motor, a row for each kind of duty."""
     table = _table("motor", "duty", "runs", "failed", "refused", "load", "angle", "first that did not go well")
-    for one in found:
-        if one.values:
-            errors = ", ".join(f"{name} {share:+.1%}" for name, share in one.errors.items())
-            table.add_row(one.motor, "commissioning", *[""] * 5, f"{one.values[1]} of {one.values[0]} values: {errors}")
-        for kind in one.kinds:
-            error = "" if kind.error is None else f"{kind.error:.2g}°"
-            load = "" if kind.load is None else f"{kind.load:.0%}"
-            numbers = (str(kind.runs), str(kind.failed), str(kind.refused), load, error)
-            table.add_row(one.motor, kind.of, *numbers, kind.first)
+    for row in rows:
+        table.add_row(*row)
     _print(table)
 
 

@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from stillspin.campaign.duty import whole_periods
 from stillspin.cases.scenario import Reached, Run
 from stillspin.core import LoadPoint, Plant
 from stillspin.type_test.ratings import Ratings
@@ -101,12 +102,12 @@ def _held(rated: Ratings, kind: str, share: float) -> Duty:
     gone = at + rise + _SETTLE + _HELD
     load = ((at, 0.0), (at + rise, torque), (gone, torque), (gone + rise, 0.0))
     end = gone + rise + _SETTLE + _HELD
-    loaded = Reached((_time(at + rise + _SETTLE), _time(gone)), _band(rated, speed))
+    loaded = Reached((whole_periods(at + rise + _SETTLE), whole_periods(gone)), _band(rated, speed))
     run = _run(
         f"{kind}_{share:g}",
         end,
         ((_BEGIN, speed),),
-        load=tuple((_time(when), round(pull, 9)) for when, pull in load),
+        load=tuple((whole_periods(when), round(pull, 9)) for when, pull in load),
         reached=(loaded, _within(rated, speed, end)),
     )
     return Duty(kind, f"{100.0 * share:g} %", run, torque / rated.torque)
@@ -116,7 +117,7 @@ def _through_zero(rated: Ratings) -> Duty:
     up = rated.speed / rated.ramp
     back = _BEGIN + up + _SETTLE + _HELD
     end = back + 2.0 * up + _SETTLE + _HELD
-    there = Reached((_time(back - _HELD), _time(back - 0.01)), _band(rated, rated.speed))
+    there = Reached((whole_periods(back - _HELD), whole_periods(back - 0.01)), _band(rated, rated.speed))
     commands = ((_BEGIN, rated.speed), (back, -rated.speed))
     reached = (there, _within(rated, -rated.speed, end))
     return Duty(REVERSAL, "rated speed", _run(REVERSAL, end, commands, reached=reached))
@@ -141,19 +142,15 @@ def _standing(rated: Ratings) -> Run:
 
 
 def _up(rated: Ratings, speed: float) -> float:
-    return _time(_BEGIN + abs(speed) / rated.ramp + _SETTLE + _HELD)
+    return whole_periods(_BEGIN + abs(speed) / rated.ramp + _SETTLE + _HELD)
 
 
 def _within(rated: Ratings, speed: float, end: float) -> Reached:
-    return Reached((_time(end - _HELD), _time(end)), _band(rated, speed), speed)
+    return Reached((whole_periods(end - _HELD), whole_periods(end)), _band(rated, speed), speed)
 
 
 def _band(rated: Ratings, speed: float) -> float:
     return max(_BAND * abs(speed), _BAND_LEAST * rated.speed)
-
-
-def _time(seconds: float) -> float:
-    return round(seconds, 4)
 
 
 def _run(
@@ -169,9 +166,9 @@ def _run(
     return Run(
         name=name,
         title="",
-        duration=_time(duration),
+        duration=whole_periods(duration),
         max_start=5.0,
-        commands=tuple((_time(at), "speed_ref_rpm", round(speed, 6)) for at, speed in commands),
+        commands=tuple((whole_periods(at), "speed_ref_rpm", round(speed, 6)) for at, speed in commands),
         load=load,
         parameters=parameters or {},
         plant={"solver": {"method": "rk4"}, **(plant or {})},

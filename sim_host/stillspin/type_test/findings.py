@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -76,6 +76,16 @@ class Finding:
         """Duties in which the shaft went wrong and the drive had not refused before."""
         return sum(kind.failed for kind in self.kinds)
 
+    def rows(self) -> Iterator[tuple[str, ...]]:
+        """For a table: what the commissioning found, then a row for each kind of duty."""
+        if self.values:
+            errors = ", ".join(f"{name} {share:+.1%}" for name, share in self.errors.items())
+            yield self.motor, "commissioning", *[""] * 5, f"{self.values[1]} of {self.values[0]} values: {errors}"
+        for kind in self.kinds:
+            error = "" if kind.error is None else f"{kind.error:.2g}°"
+            load = "" if kind.load is None else f"{kind.load:.0%}"
+            yield self.motor, kind.of, str(kind.runs), str(kind.failed), str(kind.refused), load, error, kind.first
+
     def published(self) -> dict[str, Any]:
         """As the file of the results has it."""
         return {
@@ -134,8 +144,13 @@ def kind_of(name: str, rows: Sequence[Row]) -> Kind:
         ends.count(End.FAILED),
         min((row.duty.load for row in rows if row.duty.load is not None), default=None),
         max(errors, default=None),
-        f"{bad[0].duty.of}: {bad[0].verdict.words}" if bad else "",
+        _first(name, bad[0]) if bad else "",
     )
+
+
+def _first(name: str, row: Row) -> str:
+    """Which it was, where the name does not say it, and why."""
+    return row.verdict.words if name.endswith(row.duty.of) else f"{row.duty.of}: {row.verdict.words}"
 
 
 def _errors(unit: Unit, result: Result) -> dict[str, float]:

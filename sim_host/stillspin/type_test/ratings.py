@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from stillspin.cases import open_loop as open_loops
 from stillspin.cases.motor_told import Described
+from stillspin.cases.open_loop import rpm, share
 
 _LOADED = 0.8  # of what the drive gives: the rest is for keeping the speed
 _RISEN = 2.5  # times `even`
@@ -60,23 +60,23 @@ def of(motor: Described, *, mapped: bool = False) -> Ratings:
     inductance_q, inertia = motor.plant("machine", "inductance_q"), motor.plant("mechanics", "inertia")
     volts = motor.plant("link", "source_voltage") / math.sqrt(3.0) * motor.told("voltage_use") / 100.0
     torque, limit = 1.5 * pairs * flux * current, motor.told("speed_limit")
-    speed = min(limit, _SPARE * _rpm(_loaded(volts, flux, resistance * current, inductance_q * current)) / pairs)
+    speed = min(limit, _SPARE * rpm(_loaded(volts, flux, resistance * current, inductance_q * current)) / pairs)
     weakened = flux - motor.plant("machine", "inductance_d") * motor.told("weakening_limit")
     open_loop = motor.told("start_method") == 1.0
     salient = motor.told("saliency_current") or math.inf
-    per_volt = open_loops.share(motor.plant("machine", "inductance_d"), inductance_q) / 6.0 / flux / pairs
+    per_volt = share(motor.plant("machine", "inductance_d"), inductance_q) / 6.0 / flux / pairs
     return Ratings(
         torque=torque,
         speed=speed,
-        fastest=min(limit, _SPARE * _rpm(volts / max(weakened, 0.2 * flux) / pairs)),
+        fastest=min(limit, _SPARE * rpm(volts / max(weakened, 0.2 * flux) / pairs)),
         run_up=inertia * speed * math.pi / 30.0 / torque,
         electrical=inductance_q / resistance,
-        ramp=min(motor.told("speed_ramp"), _rpm(0.5 * torque / inertia)),
+        ramp=min(motor.told("speed_ramp"), rpm(0.5 * torque / inertia)),
         slowest=motor.told("if_speed") if open_loop else 0.0,
         cogging=motor.plant("mechanics", "cogging_torque"),
         saturates=mapped or bool(motor.plant("machine", "saturation")),
         slow_torque=1.5 * pairs * flux * salient,
-        even=_rpm(motor.plant("link", "source_voltage") * per_volt),
+        even=rpm(motor.plant("link", "source_voltage") * per_volt),
     )
 
 
@@ -87,7 +87,3 @@ def _loaded(volts: float, flux: float, drop: float, flux_q: float) -> float:
     if beyond <= 0.0:
         return 0.0
     return (math.sqrt((drop * flux) ** 2 + square * beyond) - drop * flux) / square
-
-
-def _rpm(speed: float) -> float:
-    return speed * 30.0 / math.pi
