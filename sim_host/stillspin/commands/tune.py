@@ -22,8 +22,8 @@ from stillspin.tune.listen import Outside, outside
 if TYPE_CHECKING:
     from stillspin.tune.server import Server
 
-_OWN = range(49152, 65536)
-"""Ports that anybody may use."""
+_OWN = range(61000, 65536)
+"""Ports that anybody may use, and that Linux hands to no client that happens to ask before this server does."""
 
 
 def tune(

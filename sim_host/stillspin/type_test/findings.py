@@ -10,6 +10,7 @@ from stillspin import core
 from stillspin.campaign.draw import Unit
 from stillspin.campaign.judge import End
 from stillspin.cases.scenario import Run, Scenario
+from stillspin.counted import counted
 from stillspin.runs import execute
 from stillspin.runs.commission import Result
 from stillspin.type_test.carry_out import Row
@@ -80,7 +81,8 @@ class Finding:
         """For a table: what the commissioning found, then a row for each kind of duty."""
         if self.values:
             errors = ", ".join(f"{name} {share:+.1%}" for name, share in self.errors.items())
-            yield self.motor, "commissioning", *[""] * 5, f"{self.values[1]} of {self.values[0]} values: {errors}"
+            found, believed = self.values
+            yield self.motor, "commissioning", *[""] * 5, f"{counted(believed, 'value', found)}: {errors}"
         for kind in self.kinds:
             error = "" if kind.error is None else f"{kind.error:.2g}°"
             load = "" if kind.load is None else f"{kind.load:.0%}"
