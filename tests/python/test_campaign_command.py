@@ -1,6 +1,5 @@
 """The command `stillspin campaign`: what it runs, keeps, shrinks, goes on with and refuses."""
 
-import csv
 import functools
 import json
 import shlex
@@ -13,7 +12,7 @@ import pytest
 from campaign_files import HARMLESS, HEAVY, schema, written
 from typer.testing import CliRunner
 
-from stillspin import cli, resources
+from stillspin import cli, csv_table, resources
 from stillspin.campaign import faults, spread, units
 from stillspin.campaign.draw import Case, Drawer
 from stillspin.campaign.written import text as scenario_text
@@ -78,8 +77,8 @@ def test_a_campaign_that_was_broken_off_goes_on(call, tmp_path):
     after = (tmp_path / "c.jsonl").read_text()
     assert after.startswith(before)
     assert len(after.splitlines()) == 4
-    with (tmp_path / "r/cases.csv").open(newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+    about, rows = csv_table.read(tmp_path / "r/cases.csv")
+    assert about["firmware"] == own.firmware()
     assert [each["number"] for each in rows] == ["1", "2", "3"]
     other = call(*words, "-n", "3", "--resume", "--set", "mechanics.inertia=0.01")
     assert other.exit_code == 2

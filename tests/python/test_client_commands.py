@@ -1,6 +1,5 @@
 """The commands that talk to a drive: parameter files, captures as files, the live plot, the console."""
 
-import csv
 import errno
 import json
 import os
@@ -13,6 +12,7 @@ import time
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pyarrow.parquet as pq
 import pytest
 from hypothesis import given
@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from prompt_toolkit.document import Document
 from screen import terminal
 
-from stillspin import mdf
+from stillspin import csv_table, mdf
 from stillspin.commands import braille, capture_file
 from stillspin.commands.completion import Words
 from stillspin.commands.transcript import Transcript
@@ -143,10 +143,14 @@ def test_a_capture_is_written_in_every_form(ask, tmp_path):
     assert drive
     for ending in set(capture_file.WRITERS) - {".csv", ".parquet"}:
         assert drive[0].encode() in (tmp_path / f"capture{ending}").read_bytes(), ending
-    rows = list(csv.reader((tmp_path / "capture.csv").open()))
-    assert rows[0] == ["time [s]", "speed [rpm]", "current_d [A]"]
-    assert len(rows) == 513
-    assert float(rows[129][0]) == 0.0
+    head, rows = csv_table.read(tmp_path / "capture.csv")
+    assert (head["firmware"], json.loads(head["trigger"])) == (about["firmware"], about["trigger"])
+    assert list(rows[0]) == ["time [s]", "speed [rpm]", "current_d [A]"]
+    assert len(rows) == 512
+    assert float(rows[128]["time [s]"]) == 0.0
+    frame = pd.read_csv(tmp_path / "capture.csv", comment="#")
+    assert list(frame) == list(rows[0]), "as the book says"
+    assert np.isfinite(frame.to_numpy()).all()
     assert (tmp_path / "capture.png").read_bytes().startswith(b"\x89PNG")
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted([*files, "home"])
 
@@ -249,7 +253,8 @@ def test_a_place_that_cannot_be_written_is_said_before_the_capture(tmp_path):
 
 def test_monitor_prints_numbers_where_nobody_looks(ask):
     result = ask("monitor", "speed", "link_voltage", "--period", 5, "--duration", 0.4)
-    lines = result.stdout.splitlines()
+    head, *lines = result.stdout.splitlines()
+    assert re.match(r"# firmware: .*board \w+, .*table [0-9a-f]{8}\)$", head)
     assert lines[0] == "time [s]\tspeed [rpm]\tlink_voltage [V]"
     assert len(lines) > 10
     assert all(line.endswith("\t310") for line in lines[1:])

@@ -1,6 +1,7 @@
 """The client and the firmware: pyserial on a pseudo-terminal, behind it the virtual board in real time."""
 
 import os
+import re
 import subprocess
 import sys
 import threading
@@ -259,7 +260,8 @@ def test_monitor_shows_the_same_drive_over_can(port, home):
     result = CliRunner().invoke(cli.app, [*asked, "--duration", "4"])
     assert result.exit_code == 0, result.stderr
     assert "lost" not in result.stdout
-    title, *rows = result.stdout.splitlines()
+    head, title, *rows = result.stdout.splitlines()
+    assert re.match(r"# firmware: .*board \w+, ", head)
     assert title == "time [s]\tspeed [rpm]\tlink_voltage [V]"
     values = np.array([[float(number) for number in row.split("\t")] for row in rows])
     assert len(values) > 20

@@ -1,6 +1,5 @@
 """The start-up matrix: a representative part of it on the virtual drive, and what it says about itself."""
 
-import csv
 import json
 import subprocess
 import sys
@@ -9,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from stillspin import core
+from stillspin import core, csv_table
 from stillspin.drive import own
 from stillspin.errors import InputError
 from stillspin.runs import startup
@@ -29,10 +28,10 @@ def table(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, str]]:
     out = tmp_path_factory.mktemp("startup") / "out"
     done = call("--out", str(out))
     assert done.returncode in {0, 1}, done.stderr
-    rows = list(csv.DictReader((out / "startup.csv").open(encoding="utf-8")))
+    about, rows = csv_table.read(out / "startup.csv")
     metrics = json.loads((out / "metrics.json").read_text())
     assert metrics["starts"] == len(rows)
-    assert {metrics["firmware"], *(row["firmware"] for row in rows)} == {own.firmware()}
+    assert metrics["firmware"] == about["firmware"] == own.firmware()
     assert metrics["failed"] == sum(1 for row in rows if row["problem"])
     assert (done.returncode == 1) == (metrics["failed"] > 0)
     assert (out / "startup.svg").stat().st_size > 10_000

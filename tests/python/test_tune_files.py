@@ -7,6 +7,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
+from stillspin import csv_table
 from stillspin.commands import parameter_file
 from stillspin.drive.requester import wait_until
 from stillspin.errors import InputError
@@ -19,8 +20,9 @@ def test_a_history_has_every_stretch_with_units_and_gaps_where_nothing_was_plott
     history.add([1.0, 1.02], [[300.0, 301.0], [4.0, 4.0]])
     history.begin({"speed": "rpm", "current_q": "A"})
     history.add([2.0], [[310.0], [1.5]])
-    lines = history.file("csv", "x").decode().splitlines()
+    lines = history.file("csv", "1.0 (board ipm)").decode().splitlines()
     assert lines == [
+        "# firmware: 1.0 (board ipm)",
         "time [s],part,speed [rpm],state,current_q [A]",
         "1.000,1,300,4,",
         "1.020,1,301,4,",
@@ -43,7 +45,7 @@ def test_the_oldest_samples_go_first(monkeypatch):
     history.begin({"speed": "rpm"})
     for second in range(5):
         history.add([float(second)], [[1.0]])
-    assert [line[0] for line in history.file("csv", "").decode().splitlines()[1:]] == ["2", "3", "4"]
+    assert [line[0] for line in history.file("csv", "").decode().splitlines()[2:]] == ["2", "3", "4"]
 
 
 @pytest.fixture
@@ -55,14 +57,15 @@ def tuned(page, server):
 
 
 @pytest.mark.parametrize("ending", ["parquet", "csv"])
-def test_the_history_is_downloaded_from_the_page(tuned, ending):
+def test_the_history_is_downloaded_from_the_page(tuned, drive, ending):
     with tuned.expect_download() as download:
         tuned.click(f"a[href='/file/history.{ending}']")
     path = download.value.path()
     if ending == "csv":
-        assert path.read_text().startswith(
-            "time [s],part,speed [rpm],speed_reference [rpm],current_d [A],current_q [A]\n"
-        )
+        about, rows = csv_table.read(path)
+        assert about == {"firmware": drive.identity.text}
+        names = ["time [s]", "part", "speed [rpm]", "speed_reference [rpm]", "current_d [A]", "current_q [A]"]
+        assert list(rows[0]) == names
     else:
         assert pq.read_table(path).column_names[:3] == ["time", "part", "speed"]
 

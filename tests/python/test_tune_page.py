@@ -4,6 +4,7 @@ import time
 
 import pytest
 
+from stillspin import csv_table
 from stillspin.drive.requester import wait_until
 
 READY, RUN = 2, 4
@@ -100,14 +101,16 @@ def test_parameters_are_searched_changed_and_refused_in_words(tuned, fake):
     assert error.inner_text() == "speed_ramp: 200000 rpm/s is out of range; 0 … 100000 rpm/s"
 
 
-def test_a_capture_a_fault_and_the_commissioning_are_shown(tuned, fake):
+def test_a_capture_a_fault_and_the_commissioning_are_shown(tuned, fake, drive):
     tuned.click("[data-tab=scope]")
     tuned.click("#capture")
     tuned.wait_for_selector("#captured canvas")
     assert "512 records every 0.4 ms" in tuned.inner_text("#scope-note")
     with tuned.expect_download() as download:
         tuned.click("#download")
-    assert download.value.path().read_text().startswith("time [s],speed [rpm],current_d [A],current_q [A]\n")
+    about, rows = csv_table.read(download.value.path())
+    assert about["firmware"] == drive.identity.text
+    assert list(rows[0]) == ["time [s]", "speed [rpm]", "current_d [A]", "current_q [A]"]
     tuned.click("[data-tab=commissioning]")
     assert tuned.locator("#commission").is_disabled()
     for box in tuned.locator("#wizard input[type=checkbox]").all():

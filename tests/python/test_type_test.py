@@ -1,6 +1,5 @@
 """The type test of a motor: what is asked of it in its own measure, how it is judged, and what is left behind."""
 
-import csv
 import functools
 import json
 import math
@@ -9,7 +8,7 @@ from dataclasses import dataclass, replace
 import pytest
 from typer.testing import CliRunner
 
-from stillspin import cli, core
+from stillspin import cli, core, csv_table
 from stillspin.campaign import units
 from stillspin.campaign.judge import End, Verdict
 from stillspin.cases import profile
@@ -198,8 +197,9 @@ def test_a_motor_that_does_what_is_asked_of_it(call, monkeypatch, tmp_path):
         FLYING: (8, 8),
     }
     assert all(0.0 <= kind["angle_error_deg"] < 10.0 for kind in found["duties"].values())
-    with (tmp_path / "r/duties.csv").open(encoding="utf-8") as file:
-        assert [each["end"] for each in csv.DictReader(file)] == ["good"] * 10
+    about, rows = csv_table.read(tmp_path / "r/duties.csv")
+    assert about["firmware"] == own.firmware()
+    assert [each["end"] for each in rows] == ["good"] * 10
     assert 'tests="10"' in (tmp_path / "j.xml").read_text(encoding="utf-8")
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from stillspin import csv_table
 from stillspin.measure import metrics, speed_profile
 from stillspin.runs import records
 
@@ -63,9 +63,8 @@ def _holds(runs: Path, scenario: str) -> dict[str, list[list[float | None]]]:
 def _starts(path: Path) -> list[dict[str, Any]]:
     """The worst of each group of starts: how the shaft was, and what the drive was told wrong."""
     groups: dict[tuple[str, str], list[dict[str, str]]] = {}
-    with path.open(encoding="utf-8") as file:
-        for row in csv.DictReader(file):
-            groups.setdefault((row["way"], row["error"]), []).append(row)
+    for row in csv_table.read(path)[1]:
+        groups.setdefault((row["way"], row["error"]), []).append(row)
     return [
         {
             "way": way,

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from stillspin import csv_table
 from stillspin.campaign import tally, written
 from stillspin.campaign.carry_out import Small
 from stillspin.campaign.draw import Drawer, Unit
@@ -19,6 +19,8 @@ from stillspin.runs.reproduction import write_found
 CASES = "cases.csv"
 _VERDICT = ("end", "words", "wrong_s", "off_s", "angle_error_deg")
 _DRAWN = ("fault", "fault_at", "noise_seed")
+_HEAD = ("firmware", "revision", "spread", "faults", "seed")
+"""What the head of the table says of the campaign; all of it is in the numbers."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ def write(directory: Path, final: Path, outcome: Outcome) -> list[str]:
         settings = outcome.units[motor].settings
         write_found(directory / f"params-{settings.profile.motor}.toml", result, settings)
     names = [row.name for row in outcome.drawer.spread.departures]
-    _table(directory / CASES, outcome.rows, names)
+    _table(directory / CASES, outcome, names)
     found = {
         **outcome.about,
         "motors": tally.published(outcome.rows, list(outcome.units)),
@@ -73,12 +75,14 @@ def _file(directory: Path, final: Path, small: Small, outcome: Outcome) -> dict[
     }
 
 
-def _table(path: Path, rows: Sequence[Row], names: Sequence[str]) -> None:
-    with path.open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        table.writerow(("motor", "number", *_VERDICT, *_DRAWN, *names))
-        for row in rows:
-            verdict, case = row.verdict, row.case
-            judged = (verdict.end, verdict.words, verdict.wrong, verdict.off, verdict.error)
-            drawn = (case.fault or "", case.at if case.fault else "", case.noise)
-            table.writerow((row.motor, case.number, *judged, *drawn, *(case.drawn.get(name, 0.0) for name in names)))
+def _table(path: Path, outcome: Outcome, names: Sequence[str]) -> None:
+    about = {key: outcome.about[key] for key in _HEAD}
+    rows = (_cells(row, names) for row in outcome.rows)
+    csv_table.write(path, about, ("motor", "number", *_VERDICT, *_DRAWN, *names), rows)
+
+
+def _cells(row: Row, names: Sequence[str]) -> tuple[object, ...]:
+    verdict, case = row.verdict, row.case
+    judged = (verdict.end, verdict.words, verdict.wrong, verdict.off, verdict.error)
+    drawn = (case.fault or "", case.at if case.fault else "", case.noise)
+    return (row.motor, case.number, *judged, *drawn, *(case.drawn.get(name, 0.0) for name in names))

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from stillspin import extras, mdf
+from stillspin import csv_table, extras, mdf
 from stillspin.drive.scope import Capture
 from stillspin.errors import InputError
 from stillspin.report.style import PANEL_HEIGHT, RUN_COLOURS, STYLE, WIDTH
@@ -72,16 +70,12 @@ def _parquet(path: Path, capture: Capture) -> None:
 
 def _csv(path: Path, capture: Capture) -> None:
     """Units are in the headings; time in s from the trigger."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["time [s]", *(_heading(capture, name) for name in capture.signals)])
-    for index, time in enumerate(capture.time):
-        writer.writerow([f"{time:.6f}", *(f"{values[index]:.7g}" for values in capture.signals.values())])
-    path.write_text(out.getvalue(), encoding="utf-8")
-
-
-def _heading(capture: Capture, name: str) -> str:
-    return f"{name} [{capture.units[name]}]" if capture.units[name] else name
+    names = [csv_table.heading(name, unit) for name, unit in {"time": "s", **capture.units}.items()]
+    rows = (
+        [f"{time:.6f}", *(f"{values[index]:.7g}" for values in capture.signals.values())]
+        for index, time in enumerate(capture.time)
+    )
+    csv_table.write(path, capture.about, names, rows)
 
 
 def _mf4(path: Path, capture: Capture) -> None:

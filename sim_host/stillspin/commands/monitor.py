@@ -14,6 +14,7 @@ from rich.console import Console, Group
 from rich.live import Live
 from rich.text import Text
 
+from stillspin import csv_table
 from stillspin.commands import braille
 from stillspin.commands.connection import DriveOption, opened
 from stillspin.counted import counted
@@ -61,7 +62,7 @@ def monitor(
             if screen.is_terminal:
                 _draw(drive, stream, screen, end)
             else:
-                _list(stream, end)
+                _list(drive, stream, end)
         except KeyboardInterrupt:
             if duration:  # without, it is the end
                 raise
@@ -75,8 +76,9 @@ def _samples(stream: Stream, end: float) -> Iterator[Sample | None]:
         yield stream.next(_REFRESH)
 
 
-def _list(stream: Stream, end: float) -> None:
-    print("time [s]", *(f"{signal.name} [{signal.unit}]" for signal in stream.signals), sep="\t")
+def _list(drive: Drive, stream: Stream, end: float) -> None:
+    print(csv_table.head({"firmware": drive.identity.text}), end="")
+    print("time [s]", *(csv_table.heading(signal.name, signal.unit) for signal in stream.signals), sep="\t")
     for sample in _samples(stream, end):
         if sample:
             print(f"{sample.time:.3f}", *(f"{value:.6g}" for value in sample.values), sep="\t", flush=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import sys
 from collections.abc import Sequence
@@ -12,7 +11,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from stillspin import catalogue, resources
+from stillspin import catalogue, csv_table, resources
 from stillspin.campaign import units
 from stillspin.campaign.judge import End
 from stillspin.commands.campaign_options import CampaignOptions, bar, is_default, with_campaign_options
@@ -110,13 +109,14 @@ def _write(place: Path, wish: units.Wish, told: units.Told, rows: Sequence[Row],
         "motors": {one.motor: one.published() for one in found},
     }
     (place / output.MARK).write_text(json.dumps(about, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
-    with (place / CASES).open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        table.writerow(("motor", "duty", "of", "end", "words", "wrong_s", "off_s", "angle_error_deg"))
-        for row in rows:
-            ended = row.verdict
-            judged = (ended.end, ended.words, ended.wrong, ended.off, ended.error)
-            table.writerow((row.motor, row.duty.kind, row.duty.of, *judged))
+    names = ("motor", "duty", "of", "end", "words", "wrong_s", "off_s", "angle_error_deg")
+    head = {key: about[key] for key in ("firmware", "revision", "seed")}
+    csv_table.write(place / CASES, head, names, map(_cells, rows))
+
+
+def _cells(row: Row) -> tuple[object, ...]:
+    ended = row.verdict
+    return (row.motor, row.duty.kind, row.duty.of, ended.end, ended.words, ended.wrong, ended.off, ended.error)
 
 
 def _verdict(row: Row) -> junit.TestCase:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from stillspin import extras
+from stillspin import csv_table, extras
 from stillspin.drive.own import firmware
 from stillspin.report import output
 from stillspin.report.style import COLOURS, STYLE, WIDTH
@@ -18,6 +17,10 @@ from stillspin.runs.startup import BACKWARD_LIMIT, WAYS, Case, Outcome
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_COLUMNS = (
+    *("way", "angle_deg", "direction", "load_nm", "error", "seed", "speed_rpm"),
+    *("problem", "backward_deg", "sigma", "angle_error_deg", "start_s"),
+)
 _TITLES = {"brake": "held by a brake until RUN", "free": "free shaft", "flying": "turning shaft"}
 
 
@@ -55,22 +58,19 @@ def rows(outcomes: Iterable[Outcome]) -> list[tuple[str, ...]]:
     return result
 
 
+def _cells(outcome: Outcome) -> tuple[object, ...]:
+    case = outcome.case
+    about = (case.way, case.angle, case.direction, case.load, case.error, case.seed, case.speed)
+    found = (outcome.backward, outcome.sigma, outcome.angle_error, outcome.start)
+    return (*about, outcome.problem or "", *(f"{value:.4f}" for value in found))
+
+
 def write(directory: Path, outcomes: Sequence[Outcome], profile: str) -> None:
     """Writes `startup.csv` (all cases), `startup.svg` and `metrics.json` into an existing directory."""
-    identity = firmware()
-    with (directory / "startup.csv").open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        names = ("way", "angle_deg", "direction", "load_nm", "error", "seed", "speed_rpm")
-        table.writerow((*names, "problem", "backward_deg", "sigma", "angle_error_deg", "start_s", "firmware"))
-        for item in outcomes:
-            case = item.case
-            about = (case.way, case.angle, case.direction, case.load, case.error, case.seed, case.speed)
-            found = (item.backward, item.sigma, item.angle_error, item.start)
-            table.writerow((*about, item.problem or "", *(f"{value:.4f}" for value in found), identity))
+    about = {"profile": profile, "revision": revision(), "firmware": firmware()}
+    csv_table.write(directory / "startup.csv", about, _COLUMNS, map(_cells, outcomes))
     metrics = {
-        "profile": profile,
-        "revision": revision(),
-        "firmware": identity,
+        **about,
         "starts": len(outcomes),
         "failed": sum(1 for item in outcomes if item.problem),
         "ways": {way: _figures([item for item in outcomes if item.case.way == way]) for way in WAYS},

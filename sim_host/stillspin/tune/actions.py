@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any
 
+from stillspin import csv_table
 from stillspin.drive import commissioning, scope
 from stillspin.drive.protocol import Words
 from stillspin.errors import InputError
@@ -146,6 +147,7 @@ def _capture(bench: Workbench, _: str, given: Message) -> Any:
         "clipped": list(capture.clipped),
         "interval": capture.interval,
         "at": capture.trigger_time,
+        "head": csv_table.head(capture.about),
     }
 
 

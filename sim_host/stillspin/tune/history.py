@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import tempfile
 import threading
 from dataclasses import dataclass, field
@@ -13,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from stillspin import csv_table
 from stillspin.errors import InputError
 from stillspin.runs import records
 
@@ -59,13 +58,15 @@ class History:
     def file(self, ending: str, version: str) -> bytes:
         """A file of it: `parquet` with units in the columns' metadata, `csv` with units in the headings.
 
-        `time` is the drive's, s; `part` counts the stretches. What was not plotted is empty (CSV) or NaN.
+        Both say of which firmware they are. `time` is the drive's, s; `part` counts
+        the stretches. What was not plotted is empty (CSV) or NaN.
 
         Raises:
             InputError: nothing was plotted yet.
         """
         columns, units = self._columns()
-        return _parquet(columns, units, version) if ending == "parquet" else _csv(columns, units)
+        about = {"firmware": version}
+        return _parquet(columns, units, about) if ending == "parquet" else _csv(columns, units, about)
 
     def _columns(self) -> tuple[dict[str, Column], dict[str, str]]:
         with self._lock:
@@ -85,19 +86,17 @@ class History:
         return columns, {"time": "s", "part": "", **units}
 
 
-def _parquet(columns: dict[str, Column], units: dict[str, str], version: str) -> bytes:
+def _parquet(columns: dict[str, Column], units: dict[str, str], about: dict[str, str]) -> bytes:
     with tempfile.TemporaryDirectory() as directory:
         path = Path(directory) / "history.parquet"
-        records.write(path, columns, {"firmware": version}, units)
+        records.write(path, columns, about, units)
         return path.read_bytes()
 
 
-def _csv(columns: dict[str, Column], units: dict[str, str]) -> bytes:
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow([f"{name} [{units[name]}]" if units[name] else name for name in columns])
-    for row in zip(*columns.values(), strict=True):
-        writer.writerow(
-            [f"{row[0]:.3f}", int(row[1]), *("" if np.isnan(value) else f"{value:.7g}" for value in row[2:])]
-        )
-    return out.getvalue().encode()
+def _csv(columns: dict[str, Column], units: dict[str, str], about: dict[str, str]) -> bytes:
+    names = [csv_table.heading(name, units[name]) for name in columns]
+    rows = (
+        [f"{row[0]:.3f}", int(row[1]), *("" if np.isnan(value) else f"{value:.7g}" for value in row[2:])]
+        for row in zip(*columns.values(), strict=True)
+    )
+    return csv_table.text(about, names, rows).encode()

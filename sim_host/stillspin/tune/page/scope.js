@@ -120,11 +120,11 @@ export class Scope {
   }
 
   download() {
-    const { time, signals, units } = this.capture;
+    const { time, signals, units, head: about } = this.capture;
     const names = Object.keys(signals);
     const head = ["time [s]", ...names.map((name) => (units[name] ? `${name} [${units[name]}]` : name))];
     const rows = time.map((seconds, at) => [seconds.toFixed(6), ...names.map((name) => signals[name][at])].join(","));
-    const file = new Blob([`${head.join(",")}\n${rows.join("\n")}\n`], { type: "text/csv" });
+    const file = new Blob([`${about}${head.join(",")}\n${rows.join("\n")}\n`], { type: "text/csv" });
     const anchor = make("a", { href: URL.createObjectURL(file), download: "capture.csv" });
     anchor.click();
     URL.revokeObjectURL(anchor.href);
