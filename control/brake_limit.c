@@ -1,11 +1,13 @@
 #include "control/brake_limit.h"
 
+#include "hal/qmath/qcall.h"
+
 #define ONE_Q30 1073741824L
 
 // Where x lies between from (0) and to (1), Q30.
 static int32_t share_q30(int32_t x, int32_t from, int32_t to) {
   if (x <= from) return 0;
-  return (x >= to) ? ONE_Q30 : q_clamp(q_div(x - from, to - from, 30), 0, ONE_Q30);
+  return (x >= to) ? ONE_Q30 : qc_over(x - from, q_invert(to - from), 30);
 }
 
 int32_t brake_limit_q20(const brake_limit_input_t* in, int32_t limit_q20) {

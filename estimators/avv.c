@@ -14,30 +14,14 @@ void avv_preset(avv_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_ac
 // Half the turn of the saliency from where the model has it: eq (41) in the observed frame. The model's saliency is
 // (h, c) = ((ydd - yqq)/2, ydq), the measured one (h + mirror, c + cross) per spread; their quotient needs no second
 // arc tangent.
-typedef struct {
-  int32_t sine, cosine;  // of twice the error, any common size
-} doubled_t;
-
-static doubled_t doubled_error(const regression_t* r, const machine_model_t* m) {
+int32_t avv_angle_error(const regression_t* r, const machine_model_t* m) {
   const int32_t h_q30 = (m->yd_q30 - m->yq_q30) / 2;
   const int32_t c_q30 = m->ydq_q30;
   const int32_t along_q16 = q_sat64(q_shr64(q_product(h_q30, r->spread_q8), 22) + r->mirror_q16);
   const int32_t across_q16 = q_sat64(q_shr64(q_product(c_q30, r->spread_q8), 22) + r->cross_q16);
   const int64_t sine_q46 = q_product(across_q16, h_q30) - q_product(along_q16, c_q30);
   const int64_t cosine_q46 = q_mac(q_product(along_q16, h_q30), across_q16, c_q30);
-  const doubled_t e = {q_sat64(q_shr64(sine_q46, 20)), q_sat64(q_shr64(cosine_q46, 20))};
-  return e;
-}
-
-int32_t avv_angle_error(const regression_t* r, const machine_model_t* m) {
-  const doubled_t e = doubled_error(r, m);
-  return (int32_t)q_atan2(e.sine, e.cosine) / 2;
-}
-
-// tan(2 * 15 degrees) = 1/sqrt(3).
-bool avv_angle_is_near(const regression_t* r, const machine_model_t* m) {
-  const doubled_t e = doubled_error(r, m);
-  return q_abs_sat(e.sine) <= q_mul(e.cosine, FRAME_SQRT3_INV_Q30, 30);
+  return (int32_t)q_atan2(q_sat64(q_shr64(sine_q46, 20)), q_sat64(q_shr64(cosine_q46, 20))) / 2;
 }
 
 // Information (4 or more) in powers of two, with two bits of fraction: the two bits below the highest.

@@ -22,7 +22,7 @@ typedef struct {
 typedef struct {
   tracking_observer_t observer;
   regression_t regression;  // of the last step
-  int32_t error_bam;        // last measured angle error
+  int32_t error_bam;        // last measured angle error, by this regression or the one of an observer that reads
 } avv_t;
 
 void avv_preset(avv_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8);
@@ -30,8 +30,8 @@ void avv_preset(avv_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_ac
 /// Angle error that a regression tells, binary angle; valid for any error below a quarter turn.
 int32_t avv_angle_error(const regression_t* r, const machine_model_t* m);
 
-/// True while that error is 15 degrees or less, without the arc tangent.
-bool avv_angle_is_near(const regression_t* r, const machine_model_t* m);
+/// With an error beyond it the regression is not linear: nothing is learnt from it.
+#define AVV_NEAR_BAM 178956971L  // 15 degrees
 
 estimator_output_t avv_step(avv_t* s, const avv_config_t* c, const estimator_input_t* in);
 

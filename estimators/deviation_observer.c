@@ -16,12 +16,10 @@
 #define STEP_AGE_Q30 268435456L           // 16 periods
 #define STEP_AGE_UNMAPPED_Q30 536870912L  // 32 periods
 #define LAG_MAX_Q20 16777216L             // 16 units of time: 102 ms
-#define KNOWN_VARIANCE (32L * ONE_Q20)    // 5 degrees
 #define MEAN_SHIFT 5u
 #define POWER_SHIFT 8u
 #define POWER_START 419430L  // 0.05: nothing is suspected before the power is known
 #define HALF_Q9 256L
-#define DUE_Q9 128L
 #define PERIODS_DUE 7L
 #define PERIODS_MAX 12L       // the covariance is renewed at the latest
 #define LEFT_PERIODS_MAX 15L  // nobody takes what is left: it begins anew
@@ -112,21 +110,11 @@ static void gather(deviation_gathered_t* g, const information_t* n) {
   g->ss_q21 += q_shr_round(n->ss, 3);
 }
 
-// Trace of P I.
-static int32_t learnt_q9(const deviation_observer_t* s) {
-  return q_mul_hi(s->p_aa, s->gathered.aa_q21) + q_mul_hi(s->p_ss, s->gathered.ss_q21);
-}
-
 // Beyond a half the gain as it is would correct too much. Nor is an angle waited with that is not known: with zero
 // vectors alone at rest it would drift by 6 degrees in 2 s instead of one.
 static bool gain_is_old(const deviation_observer_t* s) {
-  return learnt_q9(s) > HALF_Q9 || s->p_aa > KNOWN_VARIANCE || s->gathered.periods >= PERIODS_MAX;
-}
-
-bool deviation_observer_is_sure(const deviation_observer_t* s) { return s->p_aa <= KNOWN_VARIANCE; }
-
-bool deviation_observer_update_is_urgent(const deviation_observer_t* s) {
-  return !deviation_observer_is_sure(s) || learnt_q9(s) > DUE_Q9;
+  return deviation_observer_learnt_q9(s) > HALF_Q9 || !deviation_observer_is_sure(s) ||
+         s->gathered.periods >= PERIODS_MAX;
 }
 
 bool deviation_observer_is_due(const deviation_observer_t* s) {
@@ -203,7 +191,7 @@ static information_t look(deviation_observer_t* s, const deviation_observer_conf
 // The observed load follows its cause with a delay, the gain of the speed over that of the load: the ratio of their
 // covariances with the angle. Where the angle is not known, as with zero vectors at rest, there is no wave to be seen.
 void deviation_observer_learn(deviation_observer_t* s, const deviation_observer_config_t* c) {
-  if (s->p_aa > KNOWN_VARIANCE) return;
+  if (!deviation_observer_is_sure(s)) return;
   const int32_t lag_q20 = q_min(q_over(q_abs_sat(s->p_as), q_invert(q_abs_sat(s->p_al)), 20), LAG_MAX_Q20);
   const uint32_t turned_bam = (uint32_t)q_mul_sat(s->speed_bpp, lag_q20, 14);  // a unit of time is 64 periods
   const cogging_seen_t seen = {s->angle_bam - turned_bam, s->speed_bpp, s->load_accel_q8};

@@ -94,10 +94,24 @@ void deviation_observer_stands(deviation_observer_t* s);
 
 /// True when the covariance should be renewed in one of the next periods, be it urgent or not.
 bool deviation_observer_is_due(const deviation_observer_t* s);
-/// True when the next windows may well make it renew the covariance, asked or not; so while the angle is not known to 5
-/// degrees.
-bool deviation_observer_update_is_urgent(const deviation_observer_t* s);
-bool deviation_observer_is_sure(const deviation_observer_t* s);
+
+#define DEVIATION_KNOWN_VARIANCE 33554432L  // 5 degrees
+#define DEVIATION_DUE_Q9 128L
+
+/// Whether the angle is known to 5 degrees.
+static inline bool deviation_observer_is_sure(const deviation_observer_t* s) {
+  return s->p_aa <= DEVIATION_KNOWN_VARIANCE;
+}
+
+/// What has been gathered, of what was known: trace of P I.
+static inline int32_t deviation_observer_learnt_q9(const deviation_observer_t* s) {
+  return q_mul_hi(s->p_aa, s->gathered.aa_q21) + q_mul_hi(s->p_ss, s->gathered.ss_q21);
+}
+
+/// True when the next windows may well make it renew the covariance, asked or not; so while it is not sure.
+static inline bool deviation_observer_update_is_urgent(const deviation_observer_t* s) {
+  return !deviation_observer_is_sure(s) || deviation_observer_learnt_q9(s) > DEVIATION_DUE_Q9;
+}
 
 /// Mean residual by spans, A per period Q20, and mean span of a period since the last call; false where there were
 /// none.

@@ -21,11 +21,10 @@ static void trim(machine_model_t* m, const inverse_inductance_t* y, int32_t mean
   machine_model_trim(m, mean, q_clamp(half_q30, half_min - y->half_q30, half_max - y->half_q30));
 }
 
-void inverse_inductance_step(machine_model_t* m, const regression_t* r, int32_t share_q30) {
+void inverse_inductance_step(machine_model_t* m, const regression_t* r, q_inverse_t per_spread, int32_t share_q30) {
   if (r->information <= 0) return;
   const inverse_inductance_t y = nominal(m);
   // Inverse inductance error that a residual (V A per period, Q16) over a spread (V^2, Q8) stands for.
-  const q_inverse_t per_spread = q_invert(r->spread_q8);
   const int32_t mean_q30 = m->trim.mean_q30 + q_mul(qc_over(r->along_q16, per_spread, 22), share_q30, 30);
   const int32_t half_q30 = m->trim.half_q30 + q_mul(qc_over(r->mirror_q16, per_spread, 22), share_q30, 30);
   trim(m, &y, mean_q30, half_q30);

@@ -10,9 +10,9 @@
 
 #include "estimators/regression.h"
 
-/// Moves the model's trim; share_q30: part of the error taken over per period, 0 for none. The model takes the trim
-/// into account with its next move to an operating point.
-void inverse_inductance_step(machine_model_t* m, const regression_t* r, int32_t share_q30);
+/// Moves the model's trim; per_spread: of r->spread_q8; share_q30: part of the error taken over per period, 0 for none.
+/// The model takes the trim into account with its next move to an operating point.
+void inverse_inductance_step(machine_model_t* m, const regression_t* r, q_inverse_t per_spread, int32_t share_q30);
 
 /// Takes Y0 T and 1/2 dY T at no current that were found otherwise, within the same bounds.
 void inverse_inductance_preset(machine_model_t* m, int32_t mean_q30, int32_t half_q30);

@@ -10,12 +10,12 @@
 typedef struct {
   bool open;  // not answered since the start
   tracking_observer_t axis;
-  uint32_t axis_then_bam;  // where it was when the windows were last regressed
-  int32_t axis_periods;    // since it was last corrected
-  bool samples_invalid;    // when it was to be seen
+  uint16_t axis_periods;  // since it was last moved on
+  uint16_t then_periods;  // from there to when the windows were regressed
+  bool samples_invalid;   // when it was to be seen
   emf_sign_t sign;
   dq_t voltage_q12;  // sum of the commands since the back-EMF was last looked at, V
-  int32_t periods;   // that long ago
+  uint16_t periods;  // that long ago
 } polarity_watch_t;
 
 extern polarity_watch_t polarity_watch;

@@ -69,18 +69,21 @@ static int32_t usable_current(const drive_t* d) {
   if (more_q20 <= 0) return limit_q20;
   const int32_t even_bpp = q_clamp(qc_mul_sat(d->samples.link_q16, d->config.salient_bpp_q4, 20), 1, FASTEST_EVEN_BPP);
   const int32_t beyond_bpp = qc_abs_sat(d->position.selected.speed_bpp) - even_bpp;
-  return limit_q20 - qc_mul(more_q20, q_div(q_clamp(even_bpp - beyond_bpp, 0, even_bpp), even_bpp, 30), 30);
+  const int32_t lacks_q30 = qc_over(q_clamp(even_bpp - beyond_bpp, 0, even_bpp), q_invert(even_bpp), 30);
+  return limit_q20 - qc_mul(more_q20, lacks_q30, 30);
 }
 
 int32_t drive_current_headroom(const drive_t* d) {
   const int32_t limit = usable_current(d);
-  const int64_t room =
-      (int64_t)limit * limit - (int64_t)d->control.references.current_q20.d * d->control.references.current_q20.d;
+  const int32_t id_q20 = d->control.references.current_q20.d;
+  if (id_q20 == 0) return limit;
+  const int64_t room = (int64_t)limit * limit - (int64_t)id_q20 * id_q20;
   return (room > 0) ? q_min((int32_t)q_sqrt64((uint64_t)room), limit) : 0;
 }
 
 static int32_t braking_headroom(const drive_t* d, int32_t headroom_q20) {
   brake_limit_input_t in;
+  if (d->samples.link_q16 <= d->config.values.link_regulation) return headroom_q20;
   in.link_q16 = d->samples.link_q16;
   in.start_q16 = d->config.values.link_regulation;
   // The rest of the way to the fault is for noise and for the delay of the loop.
@@ -170,6 +173,9 @@ static void begin_millisecond(drive_t* d, bool held) {
   if (drive_is_turning(d)) step_speed(d, held);
 }
 
+// A commissioning that measures at standstill commands its currents itself.
+static bool steers(const drive_t* d) { return d->state != DRIVE_COMMISSION || d->flags.spins; }
+
 static bool weakens(const drive_t* d) { return drive_is_turning(d) || d->flags.caught; }
 
 void drive_control_speed(drive_t* d) {
@@ -178,7 +184,7 @@ void drive_control_speed(drive_t* d) {
   switch (d->schedule.task) {
     case TASK_SPEED:
       if (weakens(d)) refer_field(d);
-      make_room(d);
+      if (steers(d)) make_room(d);
       begin_millisecond(d, held);
       break;
     case TASK_JUDGE_FIRST:

@@ -60,6 +60,4 @@ void gpio_write(uint16_t pin, bool level) {
   target_write32(data_register(pin, level ? REG_GPASET : REG_GPACLEAR), bit_of(pin));
 }
 
-void gpio_toggle(uint16_t pin) { target_write32(data_register(pin, REG_GPATOGGLE), bit_of(pin)); }
-
 bool gpio_read(uint16_t pin) { return (target_read32(data_register(pin, REG_GPADAT)) & bit_of(pin)) != 0uL; }

@@ -19,6 +19,8 @@ const avv_config_t kAvv = {raw(100.0 * kPeriod, 30), raw(200.0 * kPeriod, 30)};
 const std::int32_t kShare = raw(0.02, 30);       // 5 ms, the fastest allowed
 const std::int32_t kSlowShare = raw(0.002, 30);  // 50 ms, the default
 
+q_inverse_t per_spread(const regression_t& r) { return q_invert(r.spread_q8); }
+
 // Sensors that read 1 + g and 1 - g, and firmware that takes off what it believes g to be (slopes.c).
 Vector through_sensors(Vector slope, double g, double believed) {
   const double a = slope.x * (1 + g) * (1 - believed);
@@ -44,8 +46,9 @@ class Bench {
       const Input in(model_, windows);
       if (held_) avv_preset(&avv_, start_, 0, 0);
       (void)avv_step(&avv_, &kAvv, in.get());
-      if (adapt) inverse_inductance_step(&model_, &avv_.regression, kShare);
-      if (match) sensor_match_step(&mismatch_q30_, &avv_.regression, mean_q30(), match_share);
+      if (adapt) inverse_inductance_step(&model_, &avv_.regression, per_spread(avv_.regression), kShare);
+      if (match)
+        sensor_match_step(&mismatch_q30_, &avv_.regression, per_spread(avv_.regression), mean_q30(), match_share);
       machine_model_move(&model_, 0);
       largest_mismatch_ = std::max(largest_mismatch_, std::fabs(mismatch()));
       if (n >= periods - 600) sum += mismatch();
@@ -114,13 +117,13 @@ TEST(InverseInductance, StaysWithinItsBounds) {
 TEST(InverseInductance, NothingIsLearntFromOneVectorOrWithoutAShare) {
   machine_model_t m = model_of(Motor{});
   const regression_t blind = {1000, 1000000, 1000000, 0, 0, 0, {0, 0}};
-  inverse_inductance_step(&m, &blind, kShare);
+  inverse_inductance_step(&m, &blind, per_spread(blind), kShare);
   EXPECT_EQ(m.trim.mean_q30, 0);
   const regression_t seen = {10000000, 1000000, 1000000, 0, 0, 1000000, {0, 0}};
-  inverse_inductance_step(&m, &seen, 0);
+  inverse_inductance_step(&m, &seen, per_spread(seen), 0);
   EXPECT_EQ(m.trim.mean_q30, 0);
   EXPECT_EQ(m.trim.half_q30, 0);
-  inverse_inductance_step(&m, &seen, kShare);
+  inverse_inductance_step(&m, &seen, per_spread(seen), kShare);
   EXPECT_GT(m.trim.mean_q30, 0);
   EXPECT_GT(m.trim.half_q30, 0);
 }

@@ -108,25 +108,6 @@ TEST(Avv, NothingIsMeasuredAtTheTrueAngleHoweverFastAndLoaded) {
   }
 }
 
-// The comparison without arc tangent says the same as the angle, whatever the saliency's direction.
-TEST(Avv, NearIsFifteenDegrees) {
-  Random random(33);
-  const machine_model_t model = model_of(Motor{});
-  int near = 0;
-  for (int n = 0; n < 20000; ++n) {
-    regression_t r = {};
-    r.spread_q8 = random.below(10000000);
-    r.mirror_q16 = random.below(2000000) - 1000000;
-    r.cross_q16 = random.below(2000000) - 1000000;
-    const double error = std::fabs(rad(avv_angle_error(&r, &model))) / kDegree;
-    if (std::fabs(error - 15.0) < 0.001) continue;
-    ASSERT_EQ(avv_angle_is_near(&r, &model), error < 15.0) << error;
-    if (error < 15.0) ++near;
-  }
-  EXPECT_GT(near, 1000);
-  EXPECT_LT(near, 19000);
-}
-
 TEST(Avv, OneVectorTellsNothing) {
   const Window w = window_at(Motor{}, 0.5, 0.0, {3, 1}, state_vector(3), 3000, 2000);
   for (const std::vector<Window>& windows : {std::vector<Window>{}, {w}, {w, w}}) {

@@ -14,8 +14,9 @@ using namespace stillspin::test;
 
 emf_sign_result_t step(emf_sign_t& s, const machine_model_t& model, Vector v, Vector i, std::int32_t speed,
                        std::int32_t periods) {
-  const emf_sign_seen_t seen = {raw_dq(v, 16), raw_dq(i, 20), speed, periods};
-  return emf_sign_step(&s, &model, &seen);
+  const emf_sign_seen_t seen = {raw_dq(v, 16).q, raw_dq(i, 20), speed, periods};
+  emf_sign_look(&s, &model, &seen);
+  return emf_sign_judge(&s, &model, speed);
 }
 
 // Periods until there is an answer; -1 when there is none within 400. One look in `every` periods.
@@ -76,8 +77,8 @@ TEST(EmfSign, AnEmfBetweenTheTwoIsNoAnswer) {
     emf_sign_result_t last = EMF_SIGN_OPEN;
     for (int n = 0; n < 1000; ++n) last = step(s, model, {0.0, share * w * m.flux}, {0.0, 0.0}, bpp(w), 1);
     EXPECT_EQ(last, answer) << share;
-    EXPECT_EQ(s.clear > 0, answer == EMF_SIGN_RIGHT) << share;
-    EXPECT_EQ(s.against > 0, answer == EMF_SIGN_REVERSED) << share;
+    EXPECT_EQ(s.agreed > 0, answer == EMF_SIGN_RIGHT) << share;
+    EXPECT_EQ(s.agreed < 0, answer == EMF_SIGN_REVERSED) << share;
   }
 }
 

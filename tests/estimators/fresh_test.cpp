@@ -130,8 +130,8 @@ TEST(Fresh, DeviationObserver) {
 TEST(Fresh, EmfSign) {
   auto s = used<emf_sign_t>();
   emf_sign_reset(&s);
-  EXPECT_EQ(s.seen_q16 | s.expected_q16 | s.last_iq_q20, 0);
-  EXPECT_EQ(s.clear | s.against, 0);
+  EXPECT_EQ(s.seen_q16 | s.expected_q16 | s.last_iq_q20 | s.emf_q16, 0);
+  EXPECT_EQ(s.agreed | s.periods, 0);
 }
 
 TEST(Fresh, Synchronism) {

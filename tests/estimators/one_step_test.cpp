@@ -38,11 +38,11 @@ TEST(OneStep, SensorMatch) {
   std::int32_t mismatch_q30 = raw(0.001, 30);
   const double mean = 0.0166, off = -0.004, spread = 40000.0;
   const regression_t r = regression(spread, 0.0, 0.0, off * mean / std::sqrt(3.0) * spread);
-  sensor_match_step(&mismatch_q30, &r, raw(mean, 30), raw(kShare, 30));
+  sensor_match_step(&mismatch_q30, &r, q_invert(r.spread_q8), raw(mean, 30), raw(kShare, 30));
   EXPECT_NEAR(real(mismatch_q30, 30), 0.001 + kShare * off, 1e-8);
   regression_t blind = r;
   blind.information = 0;
-  sensor_match_step(&mismatch_q30, &blind, raw(mean, 30), raw(kShare, 30));
+  sensor_match_step(&mismatch_q30, &blind, q_invert(blind.spread_q8), raw(mean, 30), raw(kShare, 30));
   EXPECT_NEAR(real(mismatch_q30, 30), 0.001 + kShare * off, 1e-8);
 }
 
@@ -50,8 +50,8 @@ TEST(OneStep, InverseInductance) {
   machine_model_t m = model_of(Motor{});
   const double spread = 40000.0;
   const regression_t r = regression(spread, 0.001 * spread, -0.0004 * spread, 0.0);
-  inverse_inductance_step(&m, &r, raw(0.02, 30));
-  inverse_inductance_step(&m, &r, raw(0.02, 30));
+  inverse_inductance_step(&m, &r, q_invert(r.spread_q8), raw(0.02, 30));
+  inverse_inductance_step(&m, &r, q_invert(r.spread_q8), raw(0.02, 30));
   EXPECT_NEAR(real(m.trim.mean_q30, 30), 2 * 0.02 * 0.001, 1e-8);
   EXPECT_NEAR(real(m.trim.half_q30, 30), 2 * 0.02 * -0.0004, 1e-8);
 }

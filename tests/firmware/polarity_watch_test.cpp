@@ -28,7 +28,6 @@ class PolarityWatch : public Drive {
     inside::window_count() = 2;
     inside::current_dq_q20() = {0, 0};
     polarity_watch_begin(bam(0.5), 0);
-    polarity_watch.axis_then_bam = bam(0.5);
   }
   static void source(std::int32_t source) {
     use_source(source);
@@ -70,7 +69,7 @@ TEST_F(PolarityWatch, TheObserversAxisIsThatOfItsRegression) {
   polarity_watch.axis.speed_bpp = bpp(200.0);
   EXPECT_FALSE(step(kRegress));
   const double then = 0.5 + 200.0 * kPeriod;
-  EXPECT_NEAR(rad(polarity_watch.axis_then_bam), then, 1e-5);
+  EXPECT_EQ(polarity_watch.then_periods, 1);
   inside::observer().regressed_bam = bam(then + 0.2);
   for (int n = 0; n < 2; ++n) EXPECT_FALSE(step(kNone));
   EXPECT_FALSE(step(kFollow));
@@ -130,14 +129,14 @@ TEST_F(PolarityWatch, BlindItTakesTheAngleInUse) {
     if (why == 2) inside::current_dq_q20().q = raw(-0.51 * limit, 20);
     if (why == 3) inside::avv().regression.information = 0;
     if (why == 0) inside::current_dq_q20().q = raw(0.49 * limit, 20);
-    polarity_watch.sign.clear = polarity_watch.sign.against = 9;
+    polarity_watch.sign.agreed = 18;
     inside::command_dq_q16() = {raw(1.0, 16), raw(2.0, 16)};
     EXPECT_FALSE(step(kNone));
     EXPECT_FALSE(step(kFollow));
     const bool blind = why != 0;
     EXPECT_EQ(polarity_watch.samples_invalid, blind) << why;
     EXPECT_NEAR(axis(), blind ? -1.0 : 0.5, 1e-3) << why;
-    EXPECT_EQ(polarity_watch.sign.clear + polarity_watch.sign.against, blind ? 0 : 18);
+    EXPECT_EQ(polarity_watch.sign.agreed, blind ? 0 : 18);
     EXPECT_EQ(polarity_watch.periods, blind ? 0 : 2);
     EXPECT_EQ(polarity_watch.voltage_q12.q, blind ? 0 : raw(4.0, 12));
     if (blind) {
@@ -176,18 +175,22 @@ TEST_F(PolarityWatch, BeginsWithNothingOfTheLastRun) {
     polarity_watch_t& w = polarity_watch;
     parameters.polarity_check = check;
     use_parameters();
-    w.axis_periods = w.periods = w.voltage_q12.d = w.voltage_q12.q = 7;
+    w.axis_periods = w.then_periods = 7;
+    w.periods = 7;
+    w.voltage_q12 = {7, 7};
     w.samples_invalid = true;
+    w.sign.periods = 7;
     w.open = check == 0;
-    w.sign.clear = w.sign.against = 9;
+    w.sign.agreed = 9;
     w.sign.seen_q16 = w.sign.expected_q16 = -99;
     polarity_watch_begin(bam(1.1), bpp(50.0));
     EXPECT_EQ(w.open, check != 0);
     EXPECT_EQ(w.axis.angle_bam, bam(1.1));
     EXPECT_EQ(w.axis.speed_bpp, bpp(50.0));
-    EXPECT_EQ(w.axis_periods | w.periods | w.voltage_q12.d | w.voltage_q12.q, 0);
-    EXPECT_EQ(w.sign.clear + w.sign.against + w.sign.seen_q16 + w.sign.expected_q16, 0);
+    EXPECT_EQ(w.axis_periods | w.then_periods | w.periods | w.voltage_q12.d | w.voltage_q12.q, 0);
+    EXPECT_EQ(w.sign.agreed + w.sign.seen_q16 + w.sign.expected_q16, 0);
     EXPECT_FALSE(w.samples_invalid);
+    EXPECT_EQ(w.sign.periods, 0);
   }
 }
 
@@ -202,12 +205,14 @@ TEST_F(PolarityWatch, AnAngleInUseThatIsOffIsNoReversedMagnet) {
       polarity_watch.axis.speed_bpp = speed;
       const Vector command = Vector{0.0, emf}.turned(-off);
       inside::command_dq_q16() = raw_dq(command, 16);
+      const std::uint32_t start = polarity_watch.axis.angle_bam;
       bool reversed = false;
       int n = 0;
       for (; n < 600 && polarity_watch.open; ++n) {
-        inside::selected().angle_bam =
-            polarity_watch.axis.angle_bam + static_cast<std::uint32_t>(speed) + bam(off < 0.0 ? off + kTurn : off);
-        reversed = step(n % 5 == 4 ? SLOT_REGRESSION : kNone);
+        const std::uint32_t now = start + static_cast<std::uint32_t>(speed) * static_cast<std::uint32_t>(n + 1);
+        inside::avv().observer.angle_bam = now;
+        inside::selected().angle_bam = now + bam(off < 0.0 ? off + kTurn : off);
+        reversed = step(n % 5 == 3 ? kRegress : n % 5 == 4 ? kFollow : kNone);
       }
       EXPECT_GE(n, 50) << "5 ms";
       EXPECT_FALSE(polarity_watch.open) << off;
@@ -216,16 +221,38 @@ TEST_F(PolarityWatch, AnAngleInUseThatIsOffIsNoReversedMagnet) {
   }
 }
 
-// The sums of voltages that nobody looks at stay what they are.
-TEST_F(PolarityWatch, SumsThatAreNotLookedAtEnd) {
+// What nobody has looked at for 64 periods begins anew, and with it the change of the current.
+TEST_F(PolarityWatch, SumsThatAreNotLookedAtBeginAnew) {
   source(POSITION_AVV);
   inside::command_dq_q16() = {raw(4000.0, 16), raw(-4000.0, 16)};
-  for (int n = 0; n < 20000; ++n) EXPECT_FALSE(step(kNone));
-  EXPECT_GT(polarity_watch.voltage_q12.d, 1000000000);
-  EXPECT_LT(polarity_watch.voltage_q12.q, -1000000000);
-  EXPECT_GT(polarity_watch.periods, 9000);
-  EXPECT_LE(polarity_watch.periods, 10000);
-  EXPECT_LE(polarity_watch.axis_periods, 10000);
+  for (int n = 0; n < 64; ++n) EXPECT_FALSE(step(kNone));
+  EXPECT_EQ(polarity_watch.voltage_q12.d, 64 * raw(4000.0, 12));
+  EXPECT_EQ(polarity_watch.voltage_q12.q, -64 * raw(4000.0, 12));
+  polarity_watch.sign.last_iq_q20 = 1;
+  inside::current_dq_q20() = {0, raw(0.4, 20)};
+  EXPECT_FALSE(step(kNone));
+  EXPECT_EQ(polarity_watch.periods, 1);
+  EXPECT_EQ(polarity_watch.voltage_q12.d, raw(4000.0, 12));
+  EXPECT_EQ(polarity_watch.sign.last_iq_q20, raw(0.4, 20));
+  EXPECT_EQ(polarity_watch.axis_periods, 65) << "the axis coasts on";
+}
+
+// Beside the regression of two windows there is no room to judge: that comes with the next look at the axis, which may
+// find that there was none.
+TEST_F(PolarityWatch, WhatIsSeenBesideTheRegressionIsJudgedWithTheAxis) {
+  for (const bool blind : {false, true}) {
+    SetUp();
+    source(POSITION_AVV);
+    inside::command_dq_q16() = {0, raw(40.0, 16)};
+    polarity_watch.axis.speed_bpp = bpp_of(600);
+    EXPECT_FALSE(step(kRegress));
+    EXPECT_EQ(polarity_watch.sign.periods, 1);
+    EXPECT_EQ(polarity_watch.sign.expected_q16, 0);
+    if (blind) inside::avv().regression.information = 0;
+    EXPECT_FALSE(step(kFollow));
+    EXPECT_EQ(polarity_watch.sign.periods, 0);
+    EXPECT_EQ(polarity_watch.sign.expected_q16 == 0, blind);
+  }
 }
 
 }  // namespace

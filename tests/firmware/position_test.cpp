@@ -109,12 +109,21 @@ TEST_F(Position, WithoutWindowsNothingIsNearEnoughToLearnFrom) {
 // One place later the regression is asked; what saw nothing then is not asked back.
 TEST_F(Position, WhatWasNotNearIsNotLearntFromLater) {
   for (const bool near : {true, false}) {
-    run_with(POSITION_OBSERVER);
-    inside::schedule().slot = SLOT_LOOK;
-    inside::is_near() = near;
-    inside::observer().regression = {};
-    drive_estimate(&drive);
-    EXPECT_EQ(inside::is_near(), near && avv_angle_is_near(&inside::observer().regression, &inside::model()));
+    for (const double off : {0.0, 14.9, -14.9, 15.1, -15.1}) {
+      run_with(POSITION_OBSERVER);
+      inside::schedule().slot = SLOT_LOOK;
+      inside::is_near() = near;
+      regression_t& r = inside::observer().regression;
+      r = {};
+      r.spread_q8 = raw(40000.0, 8);
+      const machine_model_t& m = inside::model();
+      const double half = std::ldexp((m.yd_q30 - m.yq_q30) / 2.0 * r.spread_q8, -22), turned = 2.0 * off * kDegree;
+      r.mirror_q16 = static_cast<std::int32_t>(half * (std::cos(turned) - 1.0));
+      r.cross_q16 = static_cast<std::int32_t>(half * std::sin(turned));
+      drive_estimate(&drive);
+      EXPECT_NEAR(rad(static_cast<std::uint32_t>(inside::avv().error_bam)) / kDegree, off, 0.01);
+      EXPECT_EQ(inside::is_near(), near && std::fabs(off) < 15.0) << off;
+    }
   }
 }
 

@@ -303,6 +303,7 @@ TEST_F(Protection, AReversedBackEmfIsThePolarity) {
     const std::int32_t speed = bpp_of(600);  // 40 V
     polarity_watch.open = true;
     polarity_watch.samples_invalid = false;
+    inside::window_count() = ESTIMATOR_WINDOWS;
     inside::selected().speed_bpp = polarity_watch.axis.speed_bpp = speed;
     polarity_watch.axis.angle_bam = inside::selected().angle_bam;
     inside::current_dq_q20() = {0, 0};
@@ -310,7 +311,7 @@ TEST_F(Protection, AReversedBackEmfIsThePolarity) {
     int n = 0;
     for (; n < 400 && polarity_watch.open && inside::state() == DRIVE_RUN; ++n) {
       inside::schedule().slot =
-          n % 5 == 0 ? SLOT_REGRESSION : SCHEDULE_SLOTS;  // the back-EMF's place in the turn, and none
+          n % 5 == 0 ? SLOT_VOLTAGE : SCHEDULE_SLOTS;  // the back-EMF's place in the round, and none
       inside::selected().angle_bam += static_cast<std::uint32_t>(speed);
       drive_protect(&drive);
     }

@@ -65,7 +65,7 @@ static void step_avv(const estimator_input_t* in) {
   s.error_bam = any_i32;
   s.observer.speed_remainder_q8 = any_from(0, 255);
   (void)avv_step(&s, &c, in);
-  (void)avv_angle_is_near(&s.regression, in->model);
+  (void)avv_angle_error(&s.regression, in->model);
 }
 
 static void step_zvv(const estimator_input_t* in) {
@@ -84,8 +84,8 @@ static void learn(void) {
   machine_model_t* const m = &around.model;
   any_model(m);
   if (any_bool()) inverse_inductance_preset(m, any_i32, any_i32);
-  inverse_inductance_step(m, &r, any_share());
-  sensor_match_step(&mismatch_q30, &r, any_from(1, INT32_MAX), any_share());
+  inverse_inductance_step(m, &r, q_invert(r.spread_q8), any_share());
+  sensor_match_step(&mismatch_q30, &r, q_invert(r.spread_q8), any_from(1, INT32_MAX), any_share());
   any_model(m);
   if (any_bool()) voltage_match_resistance(m, any_i32);
   voltage_match_step(m, &r, machine_speed_rad_q30(any_speed()), any_share());

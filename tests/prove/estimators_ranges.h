@@ -26,8 +26,8 @@
 #define OF_VARIANCE(x_q20) FROM_TO(x_q20, 16, 536870912)
 #define OF_OUTPUT(x) (WITHIN((x).speed_bpp, SPEED_MAX_BPP) && FROM_TO((x).quality_q15, 0, 32767))
 
-/*@ requires \valid(m) && \valid_read(r); assigns m->trim \from *m, *r, share_q30; ensures OF_LEARNT(m); */
-void inverse_inductance_step(machine_model_t* m, const regression_t* r, int32_t share_q30);
+/*@ requires \valid(m) && \valid_read(r); assigns m->trim \from *m, *r, per_spread, share_q30; ensures OF_LEARNT(m); */
+void inverse_inductance_step(machine_model_t* m, const regression_t* r, q_inverse_t per_spread, int32_t share_q30);
 
 /*@ requires \valid(m); assigns m->trim \from *m, mean_q30, half_q30; ensures OF_LEARNT(m); */
 void inverse_inductance_preset(machine_model_t* m, int32_t mean_q30, int32_t half_q30);
@@ -38,9 +38,10 @@ void voltage_match_resistance(machine_model_t* m, int32_t more_q24);
 /*@ requires \valid(m) && \valid_read(r); assigns m->trim \from *m, *r, w_q30, share_q30; ensures OF_LEARNT(m); */
 void voltage_match_step(machine_model_t* m, const regression_t* r, int32_t w_q30, int32_t share_q30);
 
-/*@ requires \valid(mismatch_q30) && \valid_read(r); assigns *mismatch_q30 \from *mismatch_q30, *r, mean_q30, share_q30;
-    ensures WITHIN(*mismatch_q30, MISMATCH_END_Q30); */
-void sensor_match_step(int32_t* mismatch_q30, const regression_t* r, int32_t mean_q30, int32_t share_q30);
+/*@ requires \valid(mismatch_q30) && \valid_read(r); assigns *mismatch_q30 \from *mismatch_q30, *r, per_spread,
+   mean_q30, share_q30; ensures WITHIN(*mismatch_q30, MISMATCH_END_Q30); */
+void sensor_match_step(int32_t* mismatch_q30, const regression_t* r, q_inverse_t per_spread, int32_t mean_q30,
+                       int32_t share_q30);
 
 /*@ requires \valid(s) && \valid_read(c) && \valid_read(in); assigns *s, \result \from *s, *c, indirect:*in;
     ensures OF_OUTPUT(\result); ensures WITHIN(s->observer.speed_bpp, SPEED_MAX_BPP); */

@@ -75,9 +75,11 @@ static void look_at_emf(void) {
   emf_sign_t s;
   emf_sign_reset(&s);
   while (any_bool()) {
-    const emf_sign_seen_t seen = {any_dq(VOLTAGE_MAX_Q16), any_dq(CURRENT_MAX_Q20), any_speed(), any_from(1, 32)};
+    const emf_sign_seen_t seen = {any_from(-VOLTAGE_MAX_Q16, VOLTAGE_MAX_Q16), any_dq(CURRENT_MAX_Q20), any_speed(),
+                                  any_from(1, 64)};
     any_model(&model);
-    (void)emf_sign_step(&s, &model, &seen);
+    if (any_bool()) emf_sign_look(&s, &model, &seen);
+    (void)emf_sign_judge(&s, &model, any_speed());
   }
 }
 

@@ -68,9 +68,12 @@ int32_t flying_pause(const flying_emf_t* e, const machine_model_t* m, int32_t le
 bool flying_resolve(const flying_emf_t* first, const flying_emf_t* second, const machine_model_t* m,
                     flying_rotor_t* rotor);
 
-/*@ requires \valid(s) && \valid_read(m) && \valid_read(seen); assigns *s, \result \from *s, *m, *seen;
+/*@ requires \valid(s) && \valid_read(m) && \valid_read(seen); assigns *s \from *s, *m, *seen; */
+void emf_sign_look(emf_sign_t* s, const machine_model_t* m, const emf_sign_seen_t* seen);
+
+/*@ requires \valid(s) && \valid_read(m); assigns *s, \result \from *s, *m, speed_bpp;
     ensures FROM_TO(\result, 0, 2); */
-emf_sign_result_t emf_sign_step(emf_sign_t* s, const machine_model_t* m, const emf_sign_seen_t* seen);
+emf_sign_result_t emf_sign_judge(emf_sign_t* s, const machine_model_t* m, int32_t speed_bpp);
 
 /*@ requires \valid(s) && \valid_read(first) && \valid_read(second); assigns *s \from *s, *first, *second;
     ensures FROM_TO(s->count, 0, 2147483647); */

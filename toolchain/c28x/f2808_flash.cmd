@@ -58,8 +58,8 @@ SECTIONS
   ramfuncs  : { *(ramfuncs)
                 libstillspin_hal.a<adc.*>(.text:_hal_adc_read_window, .text:_take_results, .text:_adc_take_slice)
                 libstillspin_hal.a<sampling_timer.*>(.text:_hal_sampling_timer_read, .text:_hal_sampling_timer_set_legs)
-                libstillspin_hal.a<pwm.*>(.text:_hal_pwm_write, .text:_write_registers, .text:_hal_pwm_is_tripped,
-                                          .text:_is_any_leg_tripped, .text:_hal_pwm_was_tripped_by_pin)
+                libstillspin_hal.a<pwm.*>(.text:_write_registers, .text:_hal_pwm_is_tripped, .text:_is_any_leg_tripped,
+                                          .text:_hal_pwm_was_tripped_by_pin)
                 libstillspin_hal.a<irq.*>(.text:_control_isr, .text:_window_isr, .text:_hal_irq_control_begin,
                                           .text:_hal_irq_control_end, .text:_hal_irq_disable, .text:_hal_irq_restore,
                                           .text:retain)   /* where cl2000 has interrupt functions */
@@ -71,10 +71,13 @@ SECTIONS
                 libstillspin_firmware.a<current.*>(.text:_drive_control_current)
                 libstillspin_firmware.a<modulation.*>(.text:_drive_modulate, .text:_modulate_into, .text:_write_frame)
                 libstillspin_firmware.a<mode.*>(.text:_is_energised)
+                libstillspin_firmware.a<observer.*>(.text:_source_observer)
+                libstillspin_firmware.a<signals.*>(.text:_phase_current)
+                libstillspin_firmware.a<scope.*>(.text:_scope_step)
                 libstillspin_firmware.a<hysteresis.*>(.text:_hysteresis_slice)
                 libstillspin_estimators.a<deviation_observer.*>(.text:_deviation_observer_step)
                 libstillspin_estimators.a<regression.*>(.text:_regression_evaluate)
-                libstillspin_estimators.a<deviation.*>(.text)
+                libstillspin_estimators.a<deviation.*>(.text:_deviation_frames, .text:_deviation_model)
                 libstillspin_qmath.a<qsum.*>(.text)
               } LOAD = APP, RUN = RAM_CODE, PAGE = 0,
               LOAD_START(_image_ram_code_load), RUN_START(_image_ram_code_run), SIZE(_image_ram_code_size)

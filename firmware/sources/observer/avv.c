@@ -6,13 +6,10 @@
 
 int32_t source_deviation_q20;
 
-#define ADAPT_ERROR_MAX_BAM 178956970L  // 15 degrees: beyond that the regression is not linear
-
 void source_step_avv(drive_t* d, const estimator_input_t* in) {
   d->position.high = avv_step(&d->position.avv, &d->config.avv, in);
   if (d->flags.frozen) return;
-  if (d->schedule.slot == SLOT_REGRESSION)
-    d->position.is_near = q_abs_sat(d->position.avv.error_bam) < ADAPT_ERROR_MAX_BAM;
+  if (d->schedule.slot == SLOT_REGRESSION) d->position.is_near = q_abs_sat(d->position.avv.error_bam) <= AVV_NEAR_BAM;
   source_learn(d, &d->position.avv.regression);
 }
 

@@ -10,9 +10,9 @@ static bool is_full(const drive_t* d) { return d->samples.count >= ESTIMATOR_WIN
 
 static bool is_slot(const drive_t* d, schedule_slot_t slot) { return d->schedule.slot == slot; }
 
-static void match_sensors(drive_t* d, const regression_t* r, int32_t share_q30) {
+static void match_sensors(drive_t* d, const regression_t* r, q_inverse_t per_spread, int32_t share_q30) {
   if (!d->modulation.state.is_alternating) return;
-  sensor_match_step(&d->trim.mismatch_q30, r, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, share_q30);
+  sensor_match_step(&d->trim.mismatch_q30, r, per_spread, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, share_q30);
 }
 
 void source_learn(drive_t* d, const regression_t* r) {
@@ -22,9 +22,10 @@ void source_learn(drive_t* d, const regression_t* r) {
   // much leaves the angle quieter.
   const int32_t share_q30 = d->config.adapt_share_q30 / 4 * (d->schedule.turning ? 6 : 5);
   const bool runs = drive_is_turning(d);
-  if (inductance) inverse_inductance_step(&d->model, r, share_q30);
+  const q_inverse_t per_spread = q_invert(r->spread_q8);
+  if (inductance) inverse_inductance_step(&d->model, r, per_spread, share_q30);
   if (inductance == runs) {
-    match_sensors(d, r, share_q30);
+    match_sensors(d, r, per_spread, share_q30);
   } else if (runs && !(polarity_watch_is_awake(d) && is_full(d))) {
     const int32_t w_q30 = machine_speed_rad_q30(d->position.selected.speed_bpp);
     voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30 / 2 * 3);

@@ -14,11 +14,15 @@ static estimator_output_t step_observer(drive_t* d, const estimator_input_t* in)
 // One estimator for all speeds; the regression is that of its own deviations.
 estimator_output_t source_observer(drive_t* d, estimator_input_t* in) {
   const estimator_output_t out = step_observer(d, in);
-  const regression_t* const r = &d->position.observer.regression;
+  deviation_observer_t* const o = &d->position.observer;
   // Whether the windows agree with the angle, so that the regression is linear, is asked in the place behind it.
   if (d->schedule.slot == SLOT_REGRESSION) d->position.is_near = in->regress && in->window_count > 0u;
-  if (d->schedule.slot == SLOT_LOOK) d->position.is_near = d->position.is_near && avv_angle_is_near(r, &d->model);
-  source_learn(d, r);
+  if (d->schedule.slot == SLOT_LOOK) {
+    const int32_t error_bam = avv_angle_error(&o->regression, &d->model);
+    d->position.avv.error_bam = error_bam;
+    d->position.is_near = d->position.is_near && q_abs_sat(error_bam) <= AVV_NEAR_BAM;
+  }
+  source_learn(d, &o->regression);
   d->position.high = out;
   return out;
 }
