@@ -127,11 +127,8 @@ void position_preset_axis(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
   p->selected = now;
 }
 
-// The one in use, and the flux, which may look on.
-static void begin_sources(const drive_t* d, bool keeps) {
-  const position_source_t* const flux = position_sources[POSITION_FLUX_CONV];
-  if (flux != NULL) flux->begin(d, keeps);
-  if (d->source != flux && d->source->begin != NULL) d->source->begin(d, keeps);
+static void begin_source(const drive_t* d, bool keeps) {
+  if (d->source->begin != NULL) d->source->begin(d, keeps);
 }
 
 void position_preset(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
@@ -139,7 +136,7 @@ void position_preset(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
   position_preset_axis(d, angle_bam, seen_bpp);
   const int32_t speed_bpp = p->selected.speed_bpp;
   deviation_observer_preset(&p->observer, angle_bam, speed_bpp, 0);
-  begin_sources(d, false);
+  begin_source(d, false);
   blend_reset(&p->blend);
   if (drive_source_has(d, SOURCE_ALTERNATES)) blend_preset(&p->blend, &d->config.blend, speed_bpp);
   p->low = p->selected;
@@ -148,5 +145,5 @@ void position_preset(drive_t* d, uint32_t angle_bam, int32_t seen_bpp) {
 
 void position_keep(drive_t* d) {
   d->position.selected = d->position.seen;
-  begin_sources(d, true);
+  begin_source(d, true);
 }

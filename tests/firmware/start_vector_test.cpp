@@ -89,6 +89,7 @@ TEST_F(StartByVector, ASourceThatRestsSeesTheVector) {
 // controllers begin anew in that frame, and nobody holds the shaft.
 TEST_F(StartByVector, TheSourceTakesOverWhereTheVectorIs) {
   NEEDS("sources/flux");
+  use_source(POSITION_FLUX_CONV);
   if_ramp_phase.begin(&drive);
   if_start_t& if_start = if_ramp;
   inside::current_controller().d.integral = inside::current_controller().q.integral = 99;

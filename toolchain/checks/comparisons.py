@@ -17,8 +17,6 @@ OWN = {
     "firmware/dictionary/parameters.h": "names the values",
     "firmware/sources/flux/flux.c": "its four methods are four rows that differ in their number",
 }
-# A name in a file that is compared all the same, and why.
-BORNE = {("firmware/drive/position.c", "flux"): "begins beside whichever source has the shaft, once where it has it"}
 _ENUM = re.compile(r"enum\s*\{([^}]*\bPOSITION_ENCODER\b[^}]*)\}")
 _LOOKED_UP = re.compile(rf"\b{TABLE}\s*\[[^\]]*\]")
 _ROW = r"&\s*\w+_source\b"
@@ -36,12 +34,12 @@ def _names(body: str) -> set[str]:
     return found
 
 
-def _compared_by_name(text: str, borne: set[str]) -> Iterator[int]:
+def _compared_by_name(text: str) -> Iterator[int]:
     """Where a row is compared by a name that it has, with anything but NULL."""
     start = 0
     for end in (match.end() for match in re.finditer(r"^(?:\S.*)?\}$|\Z", text, re.MULTILINE)):
         body = text[start:end]
-        for name in map(re.escape, _names(body) - borne):
+        for name in map(re.escape, _names(body)):
             asked = rf"(?<!NULL)(?<!NULL )[=!]=\s*{name}\b(?!\s*(?:->|\.))|(?<![\w.>]){name}\s*[=!]=(?!\s*NULL\b)"
             yield from (start + match.start() for match in re.finditer(asked, body))
         start = end
@@ -52,11 +50,11 @@ def _values(root: Path) -> list[str]:
     return re.findall(r"\b(POSITION_\w+)", enum[1]) if enum else []
 
 
-def _asked(text: str, values: list[str], borne: set[str]) -> Iterator[int]:
+def _asked(text: str, values: list[str]) -> Iterator[int]:
     """Where a source, or its number, is asked for."""
     names = re.compile(rf"(?:\.|->)\s*position_source\b|\b(?:{'|'.join(['ID_position_source', *values])})\b")
     yield from (match.start() for match in _COMPARED.finditer(text))
-    yield from _compared_by_name(text, borne)
+    yield from _compared_by_name(text)
     rest = _LOOKED_UP.sub(lambda found: re.sub(r"[^\n]", " ", found[0]), text)
     yield from (match.start() for match in names.finditer(rest))
 
@@ -69,8 +67,8 @@ def check(root: Path) -> list[Finding]:
         source = path.relative_to(root).as_posix()
         if source in OWN:
             continue
-        text, borne = code(path), {name for file, name in BORNE if file == source}
-        for line in sorted({text.count("\n", 0, at) + 1 for at in _asked(text, values, borne)}):
+        text = code(path)
+        for line in sorted({text.count("\n", 0, at) + 1 for at in _asked(text, values)}):
             message = "asks which position source is chosen: what it has to know is a trait or a hook of the source"
             findings.append(Finding(source, line, message))
     return findings

@@ -1,7 +1,8 @@
 """What the steps of the control interrupt have of each other has its writer; the others read it.
 
 A write is an assignment to the member, by its path in the drive or by a pointer to the group that it lies in; a pointer
-to it through which it may be written; and such a pointer handed to a function.
+to it through which it may be written; and such a pointer handed to a function. A group whose members have several
+writers, and the drive as a whole, are written at once where they are made, and nowhere else.
 """
 
 import re
@@ -85,7 +86,7 @@ ALL = ("control", "svpwm", "estimators", "firmware")
 _ANY = r"[a-z]\w*"
 _CHAIN = r"(?:\s*\[[^\]]*\]|(?:\.|->)\w+)*"
 _ASSIGNED = rf"{_CHAIN}\s*(?:[-+*/|&^]?=(?!=)|\+\+|--|<<=|>>=)"
-_POINTED = r"^\s*(?!.*\bconst\b[\w ]*\*)\w+\s*\*[^=;]*=\s*&?"
+_POINTED = re.compile(r"\s*(?!.*\bconst\b[\w ]*\*)\w+\s*\*[^=;]*=\s*&?", re.DOTALL)  # up to the member
 _PROTOTYPE = re.compile(
     r"^(static\s)?[A-Za-z_][\w \t*]*?[ *](\w+)\(((?:[^;{}()]|\([^()]*\))*)\)\s*([;{])", re.MULTILINE
 )
@@ -148,6 +149,27 @@ class Writes:
         written = ("*" in taken or "[" in taken) and "const" not in taken.partition("*")[0]
         return (known.defined or name) if written else None
 
+    def _taken_as(self, source: str, start: int) -> str:
+        """What a function takes the argument here as, such as "void* p"; "" where it is not known."""
+        name, argument = _place_in_call(self.texts[source], start)
+        known = self._functions.get(f"{source} {name}") or self._functions.get(name)
+        return known.parameters[argument] if known and argument < len(known.parameters) else ""
+
+    def whole(self, source: str, group: str) -> Iterator[int]:
+        """Where a file writes a whole group at once; of no name, the drive."""
+        text = self.texts[source]
+        kinds = [name for name, of in GROUPS.items() if of == group] if group else ["drive_t"]
+        way = rf"(?:\bd->|\bdrive\.){group}" if group else r"(?:\bdrive|(?<![\w)\]] )\*\s*d)"
+        aliases = re.findall(rf"(?<!const )\b(?:{'|'.join(kinds)})\s*\*\s*(?:const\s+)?(\w+)", text) if kinds else []
+        if aliases:
+            way = rf"(?:{way}|(?:^|[;{{}}])\s*\*\s*(?:{'|'.join(aliases)}))"
+        yield from (match.end() - 1 for match in re.finditer(rf"{way}\s*=(?!=)", text, re.MULTILINE))
+        handed = rf"&(?:\bd->|\bdrive\.){group}" if group else r"(?:&drive|\bd)"
+        for match in re.finditer(rf"(?<=[(,\s]){handed}\s*(?=[,)])", text):
+            taken = self._taken_as(source, match.start())
+            if re.match(r"\s*void\s*\*", taken):
+                yield match.start()
+
     def of(self, source: str, path: str) -> Iterator[tuple[int, str]]:
         """Where a file writes a member, and the file of the function that does it for it, if one does."""
         text = self.texts[source]
@@ -158,7 +180,10 @@ class Writes:
         if aliases:
             way = rf"(?:{way}|\b(?:{'|'.join(aliases)})->{member or _ANY}\b)"
         yield from ((match.start(), "") for match in re.finditer(rf"{way}{_ASSIGNED}", text))
-        yield from ((match.start(), "") for match in re.finditer(rf"{_POINTED}{way}", text, re.MULTILINE))
+        for match in re.finditer(way, text):
+            begin = max(text.rfind(sign, 0, match.start()) for sign in ";{}") + 1
+            if _POINTED.fullmatch(text, begin, match.start()):
+                yield match.start(), ""
         for match in re.finditer(rf"(?<=[(,\s])&?{way}{_CHAIN}\s*(?=[,)])", text):
             if (writer := self._handed_to(source, match.start())) is not None:
                 yield match.start(), writer
@@ -167,7 +192,15 @@ class Writes:
 def check(root: Path) -> list[Finding]:
     """Findings for members of the drive that somebody else writes."""
     writes = Writes(root)
-    return [
+    groups = sorted({path.partition(".")[0] for path in WRITERS if "." in path})
+    at_once = [
+        Finding(source, text.count("\n", 0, place) + 1, f"writes {group or 'the drive'} as a whole; only {_FRESH} does")
+        for group in (*groups, "")
+        for source, text in writes.texts.items()
+        if source != _FRESH
+        for place in writes.whole(source, group)
+    ]
+    return at_once + [
         Finding(source, text.count("\n", 0, place) + 1, f"writes {path}, which is {owners[0]}'s to write")
         for path, owners in WRITERS.items()
         for source, text in writes.texts.items()

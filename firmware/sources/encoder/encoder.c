@@ -47,8 +47,9 @@ static uint32_t angle_now(const drive_t* d) {
   return encoder_angle(hal_encoder_count(), d->model.pole_pairs, encoder.counts_per_turn);
 }
 
-// The present count means the angle in use.
+// The present count means the angle in use. The flux may look on.
 static void encoder_begin(const drive_t* d, bool keeps) {
+  flux_source_begin(d, keeps);
   if (keeps) return;
   const estimator_output_t* const now = &d->position.selected;
   encoder.offset_bam = now->angle_bam - angle_now(d);

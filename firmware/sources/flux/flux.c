@@ -102,7 +102,7 @@ static flux_period_t period_of(const drive_t* d, bool is_full) {
   return p;
 }
 
-static void flux_begin(const drive_t* d, bool keeps) {
+void flux_source_begin(const drive_t* d, bool keeps) {
   if (keeps) {
     flux_observer_keep(&flux_observer);
   } else {
@@ -184,7 +184,7 @@ const position_source_t flux_source = {source_flux,
                                        flux_excitation,
                                        observability_current,
                                        flux_source_follow,
-                                       flux_begin,
+                                       flux_source_begin,
                                        NULL,
                                        SOURCE_OBSERVES | SOURCE_READS | SOURCE_HANDS_OVER | SOURCE_BLENDS,
                                        3};

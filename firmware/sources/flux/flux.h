@@ -25,6 +25,9 @@ extern flux_observer_config_t flux_config;
 /// Makes them; false where the flux is wanted for a machine that it cannot be given.
 extern const config_part_t flux_part;
 
+/// The flux begins anew; where it keeps it goes on.
+void flux_source_begin(const drive_t* d, bool keeps);
+
 /// Sets the flux to what this angle, in whose frame the current is measured, lets expect.
 void flux_source_follow(const drive_t* d, const estimator_output_t* now);
 
