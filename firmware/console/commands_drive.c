@@ -106,24 +106,13 @@ static void show_reference(void) {
   line_end();
 }
 
-// "600 rpm", "600rpm" or "600": how long the number is, 0 for all else.
-static uint16_t read_speed(const words_of_line_t* a, decimal_t* number) {
-  const word_t* const value = &a->word[0];
-  const uint16_t length = text_number(value->text, value->count, number);
-  const uint16_t left = (uint16_t)(value->count - length);
-  if (length == 0u || a->count > 2u) return 0;
-  if (left > 0u && (a->count > 1u || !packed_equals(TEXT_UNIT_RPM, &value->text[length], left))) return 0;
-  return (a->count < 2u || word_is(a, 1, TEXT_UNIT_RPM)) ? length : 0u;
-}
-
-static void take_speed(const words_of_line_t* a, const decimal_t* number, uint16_t length) {
+static void take_speed(const words_of_line_t* a, const decimal_t* number, const word_t* typed) {
   int32_t rpm_q16;
-  const word_t typed = {a->word[0].text, length};
   const bool fits = decimal_raw(number, 16, &rpm_q16);
   if (rpm_q16 != 0 && drive_is_energised() && !command_may_move(a)) return;
   octet_writer_t* const w = line_begin();
   if (!fits) {
-    put_word(w, &typed);
+    put_word(w, typed);
     put_speed_limit(w, SAY_rpm_is_beyond_speed_limit);
   } else if (action_speed(rpm_q16, w) == ANSWER_OK) {
     show_reference();
@@ -138,13 +127,16 @@ void command_ref(const words_of_line_t* a) {
     show_reference();
     return;
   }
-  const uint16_t length = read_speed(a, &number);
+  word_t typed = words_from(a, 0);
+  const uint16_t length = number_with_unit(a, 0, TEXT_UNIT_RPM, &number);
   if (length > 0u) {
-    take_speed(a, &number, length);
+    typed.count = length;
+    take_speed(a, &number, &typed);
   } else {
     octet_writer_t* const w = line_begin();
-    put_word(w, &a->word[0]);
-    put_speed_limit(w, SAY_is_not_a_speed);
+    put_word(w, &typed);
+    put_packed(w, SAY_is_not_a_number_in);
+    put_speed_limit(w, SAY_rpm_up_to_speed_limit);
     line_end_refused();
   }
 }

@@ -90,28 +90,6 @@ void command_get(const words_of_line_t* a) {
   line_end();
 }
 
-// The unit may stand behind the number or by itself.
-static bool unit_fits(const words_of_line_t* a, uint16_t number_length, packed_text_t unit) {
-  const word_t* const value = &a->word[1];
-  const uint16_t* const behind = &value->text[number_length];
-  const uint16_t left = (uint16_t)(value->count - number_length);
-  if (left > 0u) return a->count == 2u && packed_equals(unit, behind, left);
-  return word_is(a, 2, unit) || a->count == 2u;
-}
-
-static void refuse_unit(const parameter_info_t* p) {
-  octet_writer_t* const w = line_begin();
-  put_packed(w, parameter_name(p));
-  if (packed_is_empty(parameter_unit(p))) {
-    put_packed(w, SAY_has_no_unit);
-  } else {
-    put_packed(w, SAY_is_in);
-    put_packed(w, parameter_unit(p));
-  }
-  put_packed(w, SAY_nothing_changed);
-  line_end_refused();
-}
-
 static void take_value(const parameter_info_t* p, int32_t raw) {
   octet_writer_t* const w = line_begin();
   const answer_status_t status = action_set(p, raw, w);
@@ -139,7 +117,7 @@ static void refuse_value(const parameter_info_t* p, const word_t* typed, packed_
 void command_set(const words_of_line_t* a) {
   decimal_t number;
   int32_t raw;
-  if (a->count < 2u || a->count > 3u) {
+  if (a->count < 2u) {
     line_refused(SAY_set_name_value_unit_for_example_set);
     return;
   }
@@ -148,14 +126,10 @@ void command_set(const words_of_line_t* a) {
     suggest(SUGGEST_PARAMETER, &a->word[0]);
     return;
   }
-  word_t typed = a->word[1];
-  const uint16_t length = text_number(typed.text, typed.count, &number);
+  word_t typed = words_from(a, 1);
+  const uint16_t length = number_with_unit(a, 1, parameter_unit(p), &number);
   if (length == 0u) {
     refuse_value(p, &typed, SAY_is_not_a_number_in);
-    return;
-  }
-  if (!unit_fits(a, length, parameter_unit(p))) {
-    refuse_unit(p);
     return;
   }
   typed.count = length;

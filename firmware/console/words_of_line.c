@@ -6,6 +6,22 @@ bool word_is(const words_of_line_t* a, uint16_t k, packed_text_t text) {
   return k < a->count && packed_equals(text, a->word[k].text, a->word[k].count);
 }
 
+word_t words_from(const words_of_line_t* a, uint16_t k) {
+  const word_t* const last = &a->word[a->count - 1u];
+  word_t all = a->word[k];
+  all.count = (uint16_t)(&last->text[last->count] - all.text);
+  return all;
+}
+
+uint16_t number_with_unit(const words_of_line_t* a, uint16_t k, packed_text_t unit, decimal_t* number) {
+  const word_t* const value = &a->word[k];
+  const uint16_t behind = (uint16_t)(a->count - k - 1u);
+  const uint16_t length = text_number(value->text, value->count, number);
+  const uint16_t left = (uint16_t)(value->count - length);
+  if (left > 0u && (behind > 0u || !packed_equals(unit, &value->text[length], left))) return 0;
+  return (behind == 0u || (behind == 1u && word_is(a, (uint16_t)(k + 1u), unit))) ? length : 0u;
+}
+
 void put_word(octet_writer_t* w, const word_t* word) {
   for (uint16_t k = 0; k < word->count; k++) put_u8(w, word->text[k]);
 }

@@ -9,6 +9,7 @@
 #include "firmware/base/octets.h"
 #include "firmware/console/editor.h"
 #include "firmware/text/packed_text.h"
+#include "firmware/text/text.h"
 
 #if defined(__cplusplus)
 extern "C" {
@@ -30,6 +31,13 @@ typedef struct {
 
 /// The word from `at` on, or the next one; moves `at` behind it.
 word_t next_word(const editor_line_t* line, uint16_t* at);
+
+/// All that was typed from word k on, which is there.
+word_t words_from(const words_of_line_t* a, uint16_t k);
+
+/// "600 rpm", "600rpm" or "600" from word k, which is there, to the end of the line: how long the number is, 0 for all
+/// else.
+uint16_t number_with_unit(const words_of_line_t* a, uint16_t k, packed_text_t unit, decimal_t* number);
 
 /// The word as it was typed.
 void put_word(octet_writer_t* w, const word_t* word);

@@ -11,6 +11,7 @@
 #define ROTOR KNOWN_ROTOR
 #define FRAME KNOWN_FRAME
 #define HEAT_SINK KNOWN_HEAT_SINK
+#define ASKED FRAME  // and known to be 0 else, see the table
 
 // Volatile: to the background level the interrupt changes the drive at any time.
 #define SIGNAL_RPM(speed_bpp) q_mul_sat(speed_bpp, d->config.rpm_per_bpp_q40, 24)

@@ -27,6 +27,8 @@ static int32_t phase_current(const volatile drive_t* d, bool of_b) {
 // Behind it: its looks.
 #include "firmware/dictionary/signal_list.h"
 #undef SIGNAL
+#undef ASKED
+#define ASKED DRIVE
 
 int32_t look_at_nothing(const volatile drive_t* d, uint16_t known) {
   (void)d;

@@ -1,4 +1,4 @@
-"""Numbers as people type them, read by one rule everywhere: digits, one point, an exponent; no comma.
+"""Numbers as people type them, read by one rule everywhere: digits, one point, an exponent; no comma, no space.
 
 What is whole stays whole: 2.5 pole pairs are refused, 2.0 and 1e1 are whole numbers. The unit may stand behind a number
 where it is the right one. Every complaint names the value as it was typed, the range that holds, and what sets it.
@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 from stillspin.errors import InputError
 
-_NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)(?![0-9.,])\s*(.*?)\s*")
-_COMMA = re.compile(r"\s*[+-]?[0-9.]*,[0-9.,]+.*")
+_NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)(?![0-9.,])\s*((?![0-9\s]).*?)\s*")
+_PARTED = re.compile(r"\s*[+-]?[0-9.]*[, ][0-9., ]*[0-9].*")
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class Range:
     def _split(self, typed: str, name: str) -> tuple[float, str]:
         match = _NUMBER.fullmatch(typed)
         if not match:
-            why = ": no comma, decimals come after a point" if _COMMA.fullmatch(typed) else ""
+            why = ": no comma or space within it, decimals come after a point" if _PARTED.fullmatch(typed) else ""
             raise InputError(f"{name}: '{typed.strip()}' is no number{why}; {self}")
         number, unit = match.groups()
         if unit and unit != self.unit:

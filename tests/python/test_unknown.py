@@ -11,6 +11,11 @@ from function_desk import FAULT, READY, RUN, Desk
 pytest.importorskip("stillspin._core", reason="the native module is not built")
 
 OF_ROTOR = ("angle", "speed", "load_torque", "current_d", "current_q")
+ASKED_FOR = (
+    *("speed_reference", "current_d_reference", "current_q_reference"),
+    *("voltage_d", "voltage_q", "voltage_alpha", "voltage_beta"),
+)
+"""With the power stage off nothing is."""
 SENSOR_NOISE = 0.05
 """A; the sensors' noise and what a code is worth, in the mean of a period."""
 
@@ -26,7 +31,7 @@ def expect_nothing_known(desk: Desk) -> None:
     """Of the rotor, in signals, status, watch; while the sensors' currents are small."""
     seen = [desk.board.signals() for _ in range(200) if desk.wait(1.3) is None]
     assert all(row["speed_known"] == 0.0 for row in seen)
-    assert all(row[name] == 0.0 for row in seen for name in OF_ROTOR)
+    assert all(row[name] == 0.0 for row in seen for name in (*OF_ROTOR, *ASKED_FOR))
     assert max(abs(row[name]) for row in seen for name in ("current_a", "current_b")) < SENSOR_NOISE
     assert desk.status("speed").startswith("unknown, the shaft may be turning; reference ")
     currents = re.fullmatch(r"phase a (-?\d+\.\d\d) A, phase b (-?\d+\.\d\d) A", desk.status("current"))

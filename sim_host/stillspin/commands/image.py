@@ -102,7 +102,7 @@ def show(
 ) -> None:
     """Say what an image loads where, where it runs, and how full the memories are.
 
-    Exit status 1 when some of it lies in no memory, or an F2808 has not the instructions.
+    Exit status 1 when some of it lies in no memory, or it has instructions that an F2808 does not have.
     """
     image = opened.look(file)
     program = image.program

@@ -118,8 +118,8 @@ def inject(
 ) -> None:
     """Ask for an interrupt before each instruction executed in a stretch of code, and compare what it leaves behind.
 
-    Exit status 1 when at some place it leaves neither what an interrupt before the stretch leaves nor what one behind
-    it does, or when it does not put a register back.
+    Exit status 1 when at some place it leaves neither what an interrupt before the stretch leaves nor what one after it
+    leaves, or when it does not put a register back.
     """
     image = opened.read(file, rom)
     first = image.names.address(begin, "--from")

@@ -108,7 +108,7 @@ def round_trips(
 ) -> None:
     """From standstill to 3000 rpm and back without load, from random angles of the shaft, forward and backward in turn.
 
-    The angles are those of --seed. Exit status 1 when in more trips than --may-lose the drive loses the rotor.
+    The angles are those of --seed. Exit status 1 when the drive loses the rotor in more trips than --may-lose says.
     """
     with junit.Report(common.junit_file, NAME, firmware) as verdicts:
         options = Options(

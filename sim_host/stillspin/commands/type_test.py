@@ -57,11 +57,12 @@ def type_test(
     commission_first: CommissionOption = True,
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory of the results.")] = Path("results-type-test"),
 ) -> None:
-    """Commission the drive, then start, crawl, load, reverse, weaken, catch and rest, all in the motor's own measure.
+    """Commission the drive, then try starts, crawling, load, reversal, weakening and rest, sized by the motor's data.
 
-    Every initial angle, direction and load of a start, rated torque at four speeds, and so on; each judged on the true
-    shaft. What a motor without saliency cannot do by its nature is not asked of it. A motor takes a minute or two.
-    Exit status 1 when the shaft went wrong before the drive had refused.
+    Every initial angle, direction and load of a start, rated torque at four speeds, a shaft that turns already, and so
+    on; each judged on the true shaft. What a motor without saliency cannot do by its nature is not asked of it. A motor
+    takes a minute or two. Exit status 1 when in some run the shaft did not do what was asked and the drive had not said
+    so before.
     """
     named = _motors(motors or [], all_)
     profile = None if is_default(context, "profile_name") else common.profile_name
