@@ -110,14 +110,22 @@ static void take_interrupt(uint32_t vector) {
   expect(TRACE_RETURN, vector, trace_hash((const int32_t*)&signals, sizeof signals / sizeof(int32_t)));
 }
 
-// What came before an access was done: interrupts and calls of the host.
+// What came before an access was done: interrupts and calls of the host, which may access registers themselves.
 static void catch_up(void) {
   for (;;) {
     const trace_record_t r = *current();
-    switch (kind_of(&r)) {
-      case TRACE_INTERRUPT:
-        take_interrupt(r.kind_address & 0xFFFFFFu);
-        continue;
+    const trace_kind_t kind = kind_of(&r);
+    if (kind == TRACE_INTERRUPT) {
+      take_interrupt(r.kind_address & 0xFFFFFFu);
+      continue;
+    }
+    if (kind == TRACE_END) {
+      printf("records %lu\n", passed);
+      exit(0);
+    }
+    if (kind < TRACE_PARAMETER) return;
+    consume();
+    switch (kind) {
       case TRACE_PARAMETER:
         (void)parameter_set((uint16_t)r.kind_address, (int32_t)r.value);
         break;
@@ -133,16 +141,10 @@ static void catch_up(void) {
       case TRACE_COMMAND_COMMISSION:
         drive_command_commission();
         break;
-      case TRACE_SCOPE:
+      default:
         scope_run_begin();
         break;
-      case TRACE_END:
-        printf("records %lu\n", passed);
-        exit(0);
-      default:
-        return;
     }
-    consume();
   }
 }
 
