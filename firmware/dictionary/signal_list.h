@@ -2,16 +2,16 @@
 // is where the drive `d` has it between two runs of the control interrupt; an int32_t with q fractional bits; angles
 // are binary angles (unit "turn", q 32). What is said of the ROTOR is known only with its angle (speed_known), what is
 // said in the FRAME of the control only while the power stage is on, what is said of the HEAT_SINK only where its
-// sensor is in use: 0 else, whatever the estimators make of nothing. What the drive ASKED for is 0 with the power stage
-// off, whatever it was. What is said of the DRIVE is always known. Those of a feature are in a list of its folder, and
-// a signals.c beside it (drive/signal_looks.h); the build joins all rows (all_signals.h): PLACE(number) says where
-// those that follow stand in the table, smaller ones first, what has none last. No include guard: it is included with
-// different meanings of SIGNAL.
+// sensor is in use: 0 else, whatever the estimators make of nothing. What the drive ASKED for, and what held it back,
+// is 0 with the power stage off, whatever it was. What is said of the DRIVE is always known. Those of a feature are in
+// a list of its folder, and a signals.c beside it (drive/signal_looks.h); the build joins all rows (all_signals.h):
+// PLACE(number) says where those that follow stand in the table, smaller ones first, what has none last. No include
+// guard: it is included with different meanings of SIGNAL.
 
 PLACE(10)
 SIGNAL(state, NONE, 0, DRIVE, d->state, "state of the drive")
 SIGNAL(fault, NONE, 0, DRIVE, d->fault, "latched fault")
-SIGNAL(limit, NONE, 0, DRIVE, d->limits, "active limits, one bit each")
+SIGNAL(limit, NONE, 0, ASKED, d->limits, "active limits, one bit each")
 SIGNAL(angle, TURN, 32, ROTOR, d->position.selected.angle_bam, "electrical angle in use, at the start of the period")
 SIGNAL(speed, RPM, 16, ROTOR, SIGNAL_RPM(d->position.selected.speed_bpp), "mechanical speed in use")
 SIGNAL(angle_low, TURN, 32, ROTOR, d->position.low.angle_bam, "electrical angle of the low-speed estimator")

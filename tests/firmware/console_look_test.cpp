@@ -40,8 +40,10 @@ TEST_F(Console, StatusAndFaults) {
 }
 
 TEST_F(Console, StatusSaysWhatHoldsTheDriveBack) {
-  EXPECT_TRUE(has(command("status"), "limits      none\r\n"));
   inside::limits() = LIMIT_CURRENT;
+  inside::state() = DRIVE_READY;
+  EXPECT_TRUE(has(command("status"), "limits      none\r\n")) << "of when the power stage was on";
+  inside::state() = DRIVE_RUN;
   EXPECT_TRUE(has(command("status"), "limits      current limit\r\n"));
   inside::limits() = LIMIT_VOLTAGE | LIMIT_BRAKING;
   EXPECT_TRUE(has(command("status"), "limits      voltage limit, braking reduced by the DC link\r\n"));
@@ -135,6 +137,7 @@ TEST_F(Console, WatchShowsFourSignalsAtMost) {
 
 TEST_F(Console, WatchSaysWhatHoldsTheDriveBack) {
   EXPECT_FALSE(has(command("watch", 300), " V   "));
+  inside::state() = DRIVE_RUN;
   inside::limits() = LIMIT_CURRENT | LIMIT_WEAKENING;
   EXPECT_TRUE(has(command("watch", 300), " V   current limit, field weakening\r\n"));
 }

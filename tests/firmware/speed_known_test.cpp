@@ -22,6 +22,7 @@ class SpeedKnown : public Drive {
     inside::deviation_q20() = 1000;
     flux_observer.load_angle_bam = 0x01000000;
     inside::current_dq_q20() = {raw(-1.5, 20), raw(2.5, 20)};
+    inside::limits() = LIMIT_WEAKENING;
     inside::speed_ramp().value = 123456;  // of when the power stage was on
     inside::reference_dq_q20() = {raw(-1.0, 20), raw(3.0, 20)};
     inside::modulated_q16() = {raw(20.0, 16), raw(-30.0, 16)};
@@ -46,7 +47,7 @@ class SpeedKnown : public Drive {
     }
     EXPECT_EQ(s.load_angle != 0, known && has_source(POSITION_FLUX_CONV)) << what;
     for (const std::int32_t value : {s.current_d, s.current_q, s.speed_reference, s.current_d_reference,
-                                     s.current_q_reference, s.voltage_alpha, s.voltage_beta})
+                                     s.current_q_reference, s.voltage_alpha, s.voltage_beta, s.limit})
       EXPECT_EQ(value != 0, seen) << what;
   }
 };
