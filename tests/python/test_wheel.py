@@ -13,8 +13,10 @@ import desk
 import pytest
 from desk import needs_board
 from empty_environment import Environment, closure
+from typer.testing import CliRunner
 
 import stillspin
+from stillspin.cli import app
 from stillspin.commands import schema
 from stillspin.revision import revision
 
@@ -135,6 +137,16 @@ def test_the_page_is_served_from_the_wheel(client, board):
                     assert len(answer.read()) > 1000
         finally:
             running.terminate()
+
+
+def test_a_tape_is_played_into_a_board_without_the_virtual_drive(client, tmp_path):
+    tape = tmp_path / "a10.tape"
+    made = CliRunner().invoke(app, ["hil", "A10", "--check", "--port", "virtual", "--tape", str(tape)])
+    assert made.exit_code == 0, made.output
+    with desk.board(tmp_path, "--speed", "0") as port:
+        said = client.run("stillspin", "hil", "--play", tape, "--port", port)
+    assert said.returncode == 0, said.stderr
+    assert "A10 creep (its start): identical" in said.stdout
 
 
 def test_a_demonstration_is_made_and_flashed(client, tmp_path):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -23,6 +23,7 @@ from stillspin.hil import Difference, boards, built, campaign, runs
 from stillspin.hil.boards import Board
 from stillspin.hil.results import Results, Row, begun
 from stillspin.hil.runs import LoopRun
+from stillspin.hil.tape import TapeWriter
 from stillspin.hil.wish import Wish
 from stillspin.link import address
 from stillspin.link.errors import NoAnswerError
@@ -40,8 +41,9 @@ def hil(
     *,
     context: typer.Context,
     scenarios: Annotated[
-        list[str], typer.Argument(metavar="ID...", help="Scenarios, such as A10; commission; all for everything.")
-    ],
+        list[str] | None,
+        typer.Argument(metavar="ID...", help="Scenarios, such as A10; commission; all for everything."),
+    ] = None,
     port: Annotated[
         str,
         typer.Option(
@@ -73,6 +75,14 @@ def hil(
     ] = False,
     common: CampaignOptions,
     only: Annotated[list[str] | None, typer.Option("--run", help="Only this run of the scenario. Repeatable.")] = None,
+    tape: Annotated[
+        Path | None,
+        typer.Option("--tape", metavar="FILE", help="Keep what board and computer say for --play; runs take longer."),
+    ] = None,
+    play: Annotated[
+        Path | None,
+        typer.Option("--play", metavar="FILE", help="A tape in the place of scenarios: needs no virtual drive."),
+    ] = None,
 ) -> None:
     """Step a board through scenarios: this computer runs the plant, and compares every answer bit for bit.
 
@@ -84,16 +94,24 @@ def hil(
     of = revision()
     if rom and not image:
         raise InputError(NEEDS_IMAGE)
+    if (play is None) != bool(scenarios):
+        raise InputError("name scenarios, such as A10, or give --play FILE: one of the two")
     board = _executing(context, image, rom, port or can or where) if image else _address(port, can, where)
     is_virtual = board.partition(":")[0] == _VIRTUAL
+    if is_virtual and (tape or play):  # what a tape takes is said by one board
+        board = context.with_resource(Board(boards.memory())).wait(_kind(board))
+        is_virtual = False
+    if play:
+        _play(play, board, Results(file), common.junit_file)
+        return
     if not is_virtual:
         if (common.jobs or 1) != 1 or common.cluster:
             raise InputError("--jobs, --cluster: a board does one run at a time, and is at this computer")
         core.require()  # before anything is asked of the board
-        runs.ids(scenarios)
+        runs.ids(scenarios or ())
         core.follow_edition(_edition(board, image))
     wish = Wish(
-        tuple(scenarios),
+        tuple(scenarios or ()),
         check,
         tuple(only or ()),
         common.profile_name,
@@ -104,15 +122,28 @@ def hil(
     )
     everything = wish.runs(core.load())
     if not everything:
-        raise InputError(f"--run {' '.join(only or [])}: there is no such run in {' '.join(scenarios)}")
+        raise InputError(f"--run {' '.join(only or [])}: there is no such run in {' '.join(scenarios or ())}")
     results = Results(file)
     kind = _kind(board)
     left = {number for number, run in enumerate(everything) if not (resume and _is_done(results, run, kind, of))}
     chosen = [everything[number] for number in runs.broad(everything) if number in left]
     skipped = [begun(run, kind, of) for number, run in enumerate(everything) if number not in left]
-    rows = _on_virtual(chosen, kind, of, common.where) if is_virtual else _on_one(chosen, board, of)
+    taken = context.with_resource(TapeWriter(tape)) if tape else None
+    rows = _on_virtual(chosen, kind, of, common.where) if is_virtual else _on_one(chosen, board, of, taken)
+    _tell_all(rows, skipped, results, common.junit_file)
+
+
+def _play(tape: Path, board: str, results: Results, junit_file: Path | None) -> None:
+    """Everything on a tape, on a board."""
+    with PhaseBar(Console(stderr=True)) as bar:
+        rows = campaign.played(tape, board, lambda run: partial(bar.show, phase=f"{run.scenario} {run.run}"))
+        _tell_all(rows, [], results, junit_file)
+
+
+def _tell_all(rows: Iterable[Row], skipped: Sequence[Row], results: Results, junit_file: Path | None) -> None:
+    """The rows as they come, in words, in the files and as the exit status."""
     done = []
-    with junit.Report(common.junit_file, "hil") as verdicts:
+    with junit.Report(junit_file, "hil") as verdicts:
         verdicts.add(map(junit.left_out, skipped))
         for new in rows:
             verdicts.add([junit.of_loop(new)])
@@ -175,9 +206,10 @@ def _is_done(results: Results, run: LoopRun, kind: str, of: str) -> bool:
     return row is not None and row.identical and row.revision == of
 
 
-def _on_one(chosen: Sequence[LoopRun], board: str, of: str) -> Iterator[Row]:
+def _on_one(chosen: Sequence[LoopRun], board: str, of: str, tape: TapeWriter | None) -> Iterator[Row]:
     with PhaseBar(Console(stderr=True)) as bar:
-        yield from campaign.on_one(chosen, board, of, lambda run: partial(bar.show, phase=f"{run.scenario} {run.name}"))
+        told = lambda run: partial(bar.show, phase=f"{run.scenario} {run.name}")  # noqa: E731 - as long as the bar
+        yield from campaign.on_one(chosen, board, of, told, tape)
 
 
 def _on_virtual(chosen: Sequence[LoopRun], kind: str, of: str, where: Where) -> Iterator[Row]:

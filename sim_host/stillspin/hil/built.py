@@ -11,6 +11,7 @@ from stillspin.drive.own import virtual_ask
 from stillspin.drive.requester import Requester
 from stillspin.drive.table import Parameter, Signal, Table
 from stillspin.hil.kept_board import TIMEOUT
+from stillspin.hil.tape import Heading
 from stillspin.link import address
 from stillspin.link.errors import DifferentError
 
@@ -62,6 +63,35 @@ def check_board(ask: Ask) -> Identity:
             f"the board is not built like the virtual drive: {'; '.join([*found[:_SHOWN], *more])}. No step was done. "
             f"Flash an image of these sources for board {ours.board} (docs/flash.md), or use the stillspin that its "
             "image was built with"
+        )
+    return theirs
+
+
+def check_taped(ask: Ask, tape: Heading) -> Identity:
+    """Compare a board's version, edition, board file and table with those of the drive on a tape.
+
+    Args:
+        ask: of the board.
+        tape: of one of its runs.
+
+    Returns:
+        What the board says of itself.
+
+    Raises:
+        DifferentError: what differs, with both values, and how to go on.
+    """
+    theirs = describe.identity(ask)
+    pairs = {
+        "version": (theirs.version, tape.version),
+        "edition": (theirs.edition, tape.edition),
+        "board file": (theirs.board, tape.board),
+        "table": (f"{theirs.crc:08x}", f"{tape.crc:08x}"),
+    }
+    found = [f"{what} {one} on the board, {other} on the tape" for what, (one, other) in pairs.items() if one != other]
+    if found:
+        raise DifferentError(
+            f"the board is not built like the drive on the tape: {'; '.join(found)}. No step was done. Use a tape that "
+            "was made with the sources of its image"
         )
     return theirs
 

@@ -6,35 +6,83 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
+from itertools import chain
+from pathlib import Path
 
 from stillspin import core
 from stillspin.core import Progress
+from stillspin.drive.describe import Identity
 from stillspin.drive.requester import Requester
+from stillspin.errors import InputError
 from stillspin.hil import boards
-from stillspin.hil.built import check_board
+from stillspin.hil.built import check_board, check_taped
 from stillspin.hil.kept_board import TIMEOUT, kept_board
 from stillspin.hil.loop import Loop
 from stillspin.hil.results import Row, begun, ended
 from stillspin.hil.runs import LoopRun
+from stillspin.hil.tape import Heading, TapeWriter, recorded
 from stillspin.link import address
 from stillspin.link.errors import DriveError, RefusedError
 from stillspin.runs.reporting import report
 from stillspin.runs.workers import Task, Where, workers
 
 ProgressOf = Callable[[LoopRun], Progress]
+Note = Callable[[bytes, bytes], None]
 
 
-def on_one(chosen: Sequence[LoopRun], where: str, revision: str, progress: ProgressOf) -> Iterator[Row]:
-    """The runs one after the other; what is lost with the board ends them behind a row that says so."""
+def on_one(
+    chosen: Sequence[LoopRun], where: str, revision: str, progress: ProgressOf, tape: TapeWriter | None = None
+) -> Iterator[Row]:
+    """The runs one after the other; what is lost with the board ends them behind a row that says so.
+
+    Args:
+        chosen: the runs.
+        where: address of the board.
+        revision: of the sources, for the rows.
+        progress: of a run.
+        tape: gets those that are identical.
+    """
     native = core.load()
     kind = address.parse(where).kind
-    with _loop(where) as loop:
-        firmware = check_board(loop.ask).text
+    with _loop(where, tape.note if tape else None) as loop:
+        identity = check_board(loop.ask)
         for run in chosen:
-            row = replace(begun(run, kind, revision), firmware=firmware)
+            if tape:
+                tape.begin()
+            row = replace(begun(run, kind, revision), firmware=identity.text)
             row, goes_on = _step_through(loop, run, row, native, progress(run))
+            if tape and row.identical:
+                tape.keep(_heading(row, tape.pairs, identity))
             yield row
             if not goes_on:
+                return
+
+
+def _heading(row: Row, pairs: int, of: Identity) -> Heading:
+    run = (row.scenario, row.run, row.profile, row.whole, row.revision)
+    return Heading(*run, pairs, of.version, of.edition, of.board, of.crc)
+
+
+def played(file: Path, where: str, progress: Callable[[Heading], Progress]) -> Iterator[Row]:
+    """The runs of a tape one after the other; what is lost with the board ends them behind a row that says so.
+
+    Raises:
+        InputError: it is no tape.
+        DifferentError: the board is not built like the drive on it.
+    """
+    kind = address.parse(where).kind
+    runs = recorded(file)
+    if (first := next(runs, None)) is None:
+        raise InputError(f"--play {file}: there is no run on this tape: none was identical when it was made")
+    with _loop(where) as loop:
+        for heading, said in chain([first], runs):
+            firmware = check_taped(loop.ask, heading).text
+            run = (heading.scenario, heading.run, heading.profile, heading.whole)
+            row = Row(*run, kind, heading.revision, firmware=firmware)
+            try:
+                yield ended(row, loop.play(said, progress(heading)))
+            except DriveError as error:
+                yield replace(row, lost=str(error), lost_code=error.exit_code)
                 return
 
 
@@ -76,11 +124,11 @@ def _step_through(loop: Loop, run: LoopRun, row: Row, native: core.NativeCore, p
 
 
 @contextmanager
-def _loop(where: str) -> Iterator[Loop]:
+def _loop(where: str, note: Note | None = None) -> Iterator[Loop]:
     """A board in the loop, which is let go at the end."""
     requester = Requester(address.connect(where), TIMEOUT)
     try:
-        loop = Loop(requester)
+        loop = Loop(requester, note)
         try:
             yield loop
         finally:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import struct
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 
@@ -16,10 +16,12 @@ from stillspin.drive.protocol import Request
 from stillspin.drive.requester import REASONS, Requester
 from stillspin.errors import CampaignError
 from stillspin.hil import told
+from stillspin.hil.tape import Pair
 from stillspin.link.errors import DriveError, LinkError, RefusedError
 
 _SIGNALS_AT_ONCE = 16
 _PERIOD = 1e-4  # s
+_TOLD_EVERY = 64  # requests
 
 Play = Callable[[NativeCore, Progress, NativeStepLoop], str]
 """A run on the virtual drive whose recording the loop takes; the reason why it broke off, empty when it did not."""
@@ -86,8 +88,10 @@ class Loop:
     answer has to be the same to the last bit. Its own power stage stays off until it is reset.
     """
 
-    def __init__(self, requester: Requester) -> None:
+    def __init__(self, requester: Requester, note: Callable[[bytes, bytes], None] | None = None) -> None:
+        """`note` is told each request and its answer, which takes longer."""
         self._requester = requester
+        self._note = note
         self._error: DriveError | None = None
 
     def run(self, native: NativeCore, play: Play, progress: Progress | None = None) -> LoopResult:
@@ -98,7 +102,7 @@ class Loop:
             DriveError: the way to the board is lost, or it refuses what the run asks of it.
         """
         self._enter()
-        port = self._requester.transport.port
+        port = None if self._note else self._requester.transport.port
         loop = native.StepLoop.through(*port) if port else native.StepLoop.asking(self._ask)
         log = _Log(loop)
 
@@ -115,6 +119,33 @@ class Loop:
         self._check(loop)
         difference = self._difference(loop)
         return LoopResult(loop.steps, seconds, *log.digests, difference, "" if difference else reason)
+
+    def play(self, said: Sequence[Pair], progress: Progress | None = None) -> LoopResult:
+        """One run as it is on a tape, up to the first answer that is another one.
+
+        Raises:
+            CampaignError: the board cannot be put into the loop.
+            DriveError: the way to the board is lost.
+        """
+        self._enter()
+        hashes = hashlib.sha256(), hashlib.sha256()
+        steps, difference = 0, None
+        begin = time.perf_counter()
+        for number, (request, expected) in enumerate(said):
+            answer = self._ask(request)
+            if error := self._error:
+                raise error
+            steps += request[0] == Request.HIL_STEP
+            for hash_, octets in zip(hashes, (answer, expected), strict=True):
+                hash_.update(octets)
+            if answer != expected:
+                difference = Difference(steps, told.answered(Request(request[0]).name, answer, expected))
+                break
+            if progress and number % _TOLD_EVERY == 0:
+                progress(number / len(said))
+        seconds = time.perf_counter() - begin
+        board, tape = (hash_.hexdigest() for hash_ in hashes)
+        return LoopResult(steps, seconds, board, tape, difference, "")
 
     def ask(self, kind: Request, body: bytes = b"") -> bytes:
         """Anything of the board that may be asked twice, outside of a run."""
@@ -134,12 +165,15 @@ class Loop:
     def _ask(self, request: bytes) -> bytes:
         """A request by way of the requester."""
         try:
-            return b"\0" + self._requester.request(Request(request[0]), request[1:], repeat=True)
+            answer = b"\0" + self._requester.request(Request(request[0]), request[1:], repeat=True)
         except RefusedError as error:
-            return bytes((error.status,)) + str(error).encode()
+            answer = bytes((error.status,)) + str(error).encode()
         except DriveError as error:
             self._error = error
             return b""
+        if self._note:
+            self._note(request, answer)
+        return answer
 
     def _check(self, loop: NativeStepLoop) -> None:
         """Whether the run broke off because of the board."""

@@ -1,0 +1,139 @@
+"""Runs in the loop as a file: what a board was asked, and what it answered, for computers without the virtual drive.
+
+A tape is compressed by gzip. Behind its first line comes run after run: a line of JSON (`Heading`), then requests and
+answers by turns, two octets of length and as many octets each, and an empty request at the end.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import struct
+import zlib
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from stillspin.errors import InputError
+
+Pair = tuple[bytes, bytes]
+"""A request and its answer, kind and status in front."""
+_FIRST = b"stillspin tape 1\n"
+_LENGTH = struct.Struct("<H")
+
+
+@dataclass(frozen=True)
+class Heading:
+    """Of which run, and of which drive.
+
+    Attributes:
+        scenario, run, profile, whole, revision: as in the row of its results.
+        pairs: how many requests there are.
+        version, edition, board, crc: of the drive that answered.
+    """
+
+    scenario: str
+    run: str
+    profile: str
+    whole: bool
+    revision: str
+    pairs: int
+    version: str
+    edition: str
+    board: str
+    crc: int
+
+
+class TapeWriter:
+    """Takes what is said in a run, and keeps it when the run was good."""
+
+    def __init__(self, file: Path) -> None:
+        """Begin the file anew.
+
+        Raises:
+            InputError: it cannot be written.
+        """
+        self._name = file
+        self._said: list[Pair] = []
+        try:
+            self._raw = file.open("wb")
+        except OSError as error:
+            raise InputError(f"--tape {file}: cannot be written ({error.strerror})") from error
+        self._out = gzip.GzipFile("", "wb", fileobj=self._raw, mtime=0)  # the same runs are the same octets
+        self._out.write(_FIRST)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        """What was kept is whole."""
+        self._out.close()
+        self._raw.close()
+
+    def begin(self) -> None:
+        """A run; what was said in one that was not kept is forgotten."""
+        self._said.clear()
+
+    def note(self, request: bytes, answer: bytes) -> None:
+        """What was said."""
+        self._said.append((request, answer))
+
+    @property
+    def pairs(self) -> int:
+        """How many requests the run has had."""
+        return len(self._said)
+
+    def keep(self, heading: Heading) -> None:
+        """The run belongs on the tape.
+
+        Raises:
+            InputError: it cannot be written.
+        """
+        try:
+            self._out.write(json.dumps(asdict(heading)).encode() + b"\n")
+            for pair in self._said:
+                for octets in pair:
+                    self._out.write(_LENGTH.pack(len(octets)) + octets)
+            self._out.write(_LENGTH.pack(0))
+        except OSError as error:
+            raise InputError(f"--tape {self._name}: cannot be written ({error.strerror})") from error
+
+
+def recorded(file: Path) -> Iterator[tuple[Heading, list[Pair]]]:
+    """The runs of a tape.
+
+    Raises:
+        InputError: it cannot be read, or is none.
+    """
+    try:
+        with gzip.open(file, "rb") as tape:
+            if tape.readline(len(_FIRST)) != _FIRST:
+                raise ValueError
+            while line := tape.readline():
+                yield Heading(**json.loads(line)), list(_pairs(tape))
+    except (EOFError, ValueError, TypeError, zlib.error, gzip.BadGzipFile) as error:
+        raise InputError(
+            f"--play {file}: is no whole tape; `stillspin hil ID --port virtual --tape FILE` makes one"
+        ) from error
+    except OSError as error:
+        raise InputError(f"--play {file}: cannot be read ({error.strerror})") from error
+
+
+def _pairs(tape: gzip.GzipFile) -> Iterator[Pair]:
+    while request := _octets(tape):
+        yield request, _octets(tape)
+
+
+def _octets(tape: gzip.GzipFile) -> bytes:
+    length = tape.read(_LENGTH.size)
+    if len(length) < _LENGTH.size:
+        raise EOFError
+    count = _LENGTH.unpack(length)[0]
+    octets = tape.read(count)
+    if len(octets) < count:
+        raise EOFError
+    return octets
