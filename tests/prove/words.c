@@ -3,26 +3,30 @@
 
 #include "firmware/console/commands_drive.c"
 #include "firmware/console/commands_parameters.c"
+#include "firmware/console/words_of_line.c"
 #include "firmware/dictionary/parameters.h"
 
 /*@ predicate word_of(word_t* w) = \valid_read(w) && 1 <= w->count <= EDITOR_LINE &&
       \valid_read(w->text + (0 .. w->count - 1));
 
+    predicate behind(word_t* w, word_t* next) = \base_addr(w->text) == \base_addr(next->text) &&
+      w->text + w->count <= next->text <= w->text + EDITOR_LINE;
+
     predicate words_of(words_of_line_t* a) = \valid_read(a) && a->count <= COMMAND_WORDS &&
       (a->count > 0 ==> word_of(&a->word[0])) && (a->count > 1 ==> word_of(&a->word[1])) &&
-      (a->count > 2 ==> word_of(&a->word[2]));
+      (a->count > 2 ==> word_of(&a->word[2])) && (a->count > 1 ==> behind(&a->word[0], &a->word[1])) &&
+      (a->count > 2 ==> behind(&a->word[1], &a->word[2]));
 */
 
 /*@ requires words_of(a) && unit < PACKED_TEXTS; assigns \nothing; */
 bool word_is(const words_of_line_t* a, uint16_t k, packed_text_t unit);
 
-/*@ requires words_of(a) && a->count >= 1 && \valid(number) && \separated(number, a); assigns *number;
-    ensures \result <= a->word[0].count; */
-static uint16_t read_speed(const words_of_line_t* a, decimal_t* number);
+/*@ requires words_of(a) && k < a->count; assigns \nothing; */
+word_t words_from(const words_of_line_t* a, uint16_t k);
 
-/*@ requires words_of(a) && a->count >= 2 && number_length <= a->word[1].count && unit < PACKED_TEXTS;
-    assigns \nothing; */
-static bool unit_fits(const words_of_line_t* a, uint16_t number_length, packed_text_t unit);
+/*@ requires words_of(a) && k < a->count && unit < PACKED_TEXTS && \valid(number) && \separated(number, a);
+    assigns *number; ensures \result <= a->word[k].count; */
+uint16_t number_with_unit(const words_of_line_t* a, uint16_t k, packed_text_t unit, decimal_t* number);
 
 // What the table says, the part commands reads.
 /*@ requires \valid_read(name + (0 .. count - 1)); assigns \nothing;

@@ -84,7 +84,11 @@ DEFECTS = (
         "2u, SVPWM_FIRST_TICK - 1, common",
     ),
     Defect(
-        "words", "read_speed", "firmware/console/commands_drive.c", "(uint16_t)(value->count - length)", "value->count"
+        "words",
+        "number_with_unit",
+        "firmware/console/words_of_line.c",
+        "(uint16_t)(value->count - length)",
+        "value->count",
     ),
     Defect("edges", "svpwm_take_window", "svpwm/windows.c", "window_count < c->windows", "window_count <= c->windows"),
     Defect(

@@ -317,13 +317,13 @@ PARTS = (
         ),
         READER,
         *(OF_QMATH, "q_shl_sat", OF_WRITING, OF_TYPING, OF_LINES),
-        related=("read_speed", "unit_fits"),
+        related=("number_with_unit", "words_from"),
     ),
     wp(
         "words",
         ("tests/prove/words.c",),
         ("-wp-timeout", "60"),
-        ("read_speed", "unit_fits", "command_set"),
+        ("number_with_unit", "words_from", "command_set"),
         (LINK_RANGES,),
     ),
     of_link(
