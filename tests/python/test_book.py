@@ -28,6 +28,7 @@ def test_who_is_about_to_use_a_chip_reads_first_how_the_image_fits(page: str) ->
     text = (ROOT / page).read_text(encoding="utf-8")
     top = text if page == "README.md" else text.split("\n## ")[0]
     assert ("does not fit its chip" in top) is not fit.fits
+    assert ("whether it fits its chip is open" in top.lower()) is fit.is_open
     assert f"{fit.of_flash(fit.words):.0f} % of the flash" in top
     assert f"{fit.of_period(fit.worst):.0f} % of its period" in top
     assert "image.md#does-it-fit" in top

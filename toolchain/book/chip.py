@@ -41,6 +41,11 @@ class Fit:
         """By what is expected."""
         return self.words <= self.room and self.worst <= self.period
 
+    @property
+    def is_open(self) -> bool:
+        """Whether it is expected to fit, and yet may not: with a probability of less than 90 %."""
+        return self.fits and (self.words_p90 > self.room or self.worst_p90 > self.period)
+
     def of_flash(self, words: float) -> float:
         """Of the flash, %."""
         return 100 * words / self.room
