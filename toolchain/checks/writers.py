@@ -138,22 +138,19 @@ class Writes:
         self.texts = {p.relative_to(root).as_posix(): code(p) for p in sorted((root / "firmware").rglob("*.[ch]"))}
         self._functions = _functions(root)
 
-    def _handed_to(self, source: str, start: int) -> str | None:
-        """Where the function is defined that may write what it is handed here; None where none may."""
-        text = self.texts[source]
-        name, argument = _place_in_call(text, start)
-        known = self._functions.get(f"{source} {name}") or self._functions.get(name)
-        if known is None or argument >= len(known.parameters):
-            return None if name in {"", "sizeof", "if", "while"} or text[start] != "&" else name
-        taken = known.parameters[argument]
-        written = ("*" in taken or "[" in taken) and "const" not in taken.partition("*")[0]
-        return (known.defined or name) if written else None
-
-    def _taken_as(self, source: str, start: int) -> str:
-        """What a function takes the argument here as, such as "void* p"; "" where it is not known."""
+    def _called(self, source: str, start: int) -> tuple[str, _Function | None, str]:
+        """The name of the function in whose call this is an argument, what is known of it, and as what it takes it."""
         name, argument = _place_in_call(self.texts[source], start)
         known = self._functions.get(f"{source} {name}") or self._functions.get(name)
-        return known.parameters[argument] if known and argument < len(known.parameters) else ""
+        return name, known, known.parameters[argument] if known and argument < len(known.parameters) else ""
+
+    def _handed_to(self, source: str, start: int) -> str | None:
+        """Where the function is defined that may write what it is handed here; None where none may."""
+        name, known, taken = self._called(source, start)
+        if known is None or not taken:
+            return None if name in {"", "sizeof", "if", "while"} or self.texts[source][start] != "&" else name
+        written = ("*" in taken or "[" in taken) and "const" not in taken.partition("*")[0]
+        return (known.defined or name) if written else None
 
     def whole(self, source: str, group: str) -> Iterator[int]:
         """Where a file writes a whole group at once; of no name, the drive."""
@@ -166,8 +163,7 @@ class Writes:
         yield from (match.end() - 1 for match in re.finditer(rf"{way}\s*=(?!=)", text, re.MULTILINE))
         handed = rf"&(?:\bd->|\bdrive\.){group}" if group else r"(?:&drive|\bd)"
         for match in re.finditer(rf"(?<=[(,\s]){handed}\s*(?=[,)])", text):
-            taken = self._taken_as(source, match.start())
-            if re.match(r"\s*void\s*\*", taken):
+            if re.match(r"\s*void\s*\*", self._called(source, match.start())[2]):
                 yield match.start()
 
     def of(self, source: str, path: str) -> Iterator[tuple[int, str]]:

@@ -69,7 +69,7 @@ def replay(made: Program, trace: Path, entry: int, what: str) -> Counts:
     plugin = f"file={made.plugin},regions={regions},entry={entry},out={counted}"
     machine = ("-M", "mps2-an385", "-nographic", "-monitor", "none", "-serial", "none", "-display", "none")
     command = [program.EMULATOR, *machine, "-semihosting-config", semihosting, "-kernel", made.image, "-plugin", plugin]
-    run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=1800)
+    run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
     if run.returncode != 0:
         raise SystemExit(f"isr-cost: {what}: {run.stdout}{run.stderr}")
     found = counts.read(counted)

@@ -15,6 +15,7 @@ from stillspin import core
 from stillspin.board import image as images
 from stillspin.commands.campaign_options import CampaignOptions, with_campaign_options
 from stillspin.commands.connection import DriveOption, wanted
+from stillspin.core import Progress
 from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
@@ -208,8 +209,11 @@ def _is_done(results: Results, run: LoopRun, kind: str, of: str) -> bool:
 
 def _on_one(chosen: Sequence[LoopRun], board: str, of: str, tape: TapeWriter | None) -> Iterator[Row]:
     with PhaseBar(Console(stderr=True)) as bar:
-        told = lambda run: partial(bar.show, phase=f"{run.scenario} {run.name}")  # noqa: E731 - as long as the bar
-        yield from campaign.on_one(chosen, board, of, told, tape)
+
+        def progress(run: LoopRun) -> Progress:
+            return partial(bar.show, phase=f"{run.scenario} {run.name}")
+
+        yield from campaign.on_one(chosen, board, of, progress, tape)
 
 
 def _on_virtual(chosen: Sequence[LoopRun], kind: str, of: str, where: Where) -> Iterator[Row]:

@@ -52,15 +52,15 @@ def on_one(
             row = replace(begun(run, kind, revision), firmware=identity.text)
             row, goes_on = _step_through(loop, run, row, native, progress(run))
             if tape and row.identical:
-                tape.keep(_heading(row, tape.pairs, identity))
+                tape.keep(_heading(row, identity))
             yield row
             if not goes_on:
                 return
 
 
-def _heading(row: Row, pairs: int, of: Identity) -> Heading:
+def _heading(row: Row, of: Identity) -> Heading:
     run = (row.scenario, row.run, row.profile, row.whole, row.revision)
-    return Heading(*run, pairs, of.version, of.edition, of.board, of.crc)
+    return Heading(*run, of.version, of.edition, of.board, of.crc)
 
 
 def played(file: Path, where: str, progress: Callable[[Heading], Progress]) -> Iterator[Row]:

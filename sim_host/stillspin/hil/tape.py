@@ -30,7 +30,6 @@ class Heading:
 
     Attributes:
         scenario, run, profile, whole, revision: as in the row of its results.
-        pairs: how many requests there are.
         version, edition, board, crc: of the drive that answered.
     """
 
@@ -39,7 +38,6 @@ class Heading:
     profile: str
     whole: bool
     revision: str
-    pairs: int
     version: str
     edition: str
     board: str
@@ -81,11 +79,6 @@ class TapeWriter:
     def note(self, request: bytes, answer: bytes) -> None:
         """What was said."""
         self._said.append((request, answer))
-
-    @property
-    def pairs(self) -> int:
-        """How many requests the run has had."""
-        return len(self._said)
 
     def keep(self, heading: Heading) -> None:
         """The run belongs on the tape.

@@ -58,8 +58,8 @@ class History:
     def file(self, ending: str, version: str) -> bytes:
         """A file of it: `parquet` with units in the columns' metadata, `csv` with units in the headings.
 
-        Both say of which firmware they are. `time` is the drive's, s; `part` counts
-        the stretches. What was not plotted is empty (CSV) or NaN.
+        Both say of which firmware they are. `time` is the drive's, s; `part` counts the stretches. What was not plotted
+        is empty (CSV) or NaN.
 
         Raises:
             InputError: nothing was plotted yet.
