@@ -117,6 +117,13 @@ def test_where_nothing_shows_the_angle_at_rest_nothing_is_asked_below_the_vector
     assert not any(duty.run.load for duty in asked if duty.kind == START)
 
 
+def test_a_vector_is_told_which_way_to_turn_the_shaft_when_it_starts():
+    # Told later it has turned the shaft forwards by then: no start would be a backward one.
+    starts = [duty for duty in duties.duties(of_file("B-SPM"), 2) if duty.kind == duties.START]
+    assert {duty.run.commands[0][0] for duty in starts} == {0.0}
+    assert {duty.run.commands[0][2] > 0.0 for duty in starts} == {True, False}
+
+
 def test_a_shaft_is_held_at_its_start_where_saturation_tells_the_polarity():
     for saturates in (True, False):
         asked = duties.duties(replace(told(ROUND), saturates=saturates))

@@ -65,7 +65,10 @@ def duties(rated: Ratings, angles: int = ANGLES) -> Iterator[Duty]:
 
 
 def _starts(rated: Ratings, angles: int) -> Iterator[Duty]:
-    """A shaft that is free, and one whose brake opens when the start is over and leaves it to a load."""
+    """A shaft that is free, and one whose brake opens when the start is over and leaves it to a load.
+
+    A current vector turns the shaft the way that it is commanded when it starts.
+    """
     command = max(_STARTED * rated.speed, 1.5 * rated.slowest)
     half = 0.5 * rated.load_at(0.0)
     ways = (-half, 0.0, half) if rated.saturates and not rated.slowest else (0.0,)
@@ -82,7 +85,7 @@ def _start(rated: Ratings, angle: float, command: float, load: float) -> Run:
     return _run(
         "start",
         _up(rated, command),
-        ((_BEGIN, command),),
+        ((0.0 if rated.slowest else _BEGIN, command),),
         load=((0.0, load), (1.0, load)) if load else (),
         plant={"initial": {"angle": math.radians(angle)}, **shaft},
         parameters={"hold_time": _HOLD_TIME} if load else {},
