@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 
 import pytest
@@ -20,7 +21,7 @@ SAID = [(b"\x21question", b"\0answer"), (b"\x21", b"")]
 
 
 def written(file, *runs):
-    with TapeWriter(file) as tape:
+    with TapeWriter(file, len(runs)) as tape:
         for heading, said in runs:
             tape.begin()
             for pair in said:
@@ -37,7 +38,7 @@ def test_what_was_said_is_read_again_run_by_run(tmp_path):
 
 
 def test_what_is_not_kept_is_not_there(tmp_path):
-    with TapeWriter(tmp_path / "tape") as tape:
+    with TapeWriter(tmp_path / "tape", 1) as tape:
         tape.begin()
         tape.note(*SAID[0])
         tape.begin()
@@ -46,6 +47,23 @@ def test_what_is_not_kept_is_not_there(tmp_path):
         tape.begin()
         tape.note(*SAID[0])
     assert list(recorded(tmp_path / "tape")) == [(HEADING, [SAID[1]])]
+
+
+@pytest.mark.parametrize("kept", [0, 1])
+def test_a_tape_on_which_runs_are_missing_does_not_take_the_place_of_another(tmp_path, capsys, kept):
+    old = written(tmp_path / "tape", (HEADING, SAID)).read_bytes()
+    with suppress(KeyboardInterrupt), TapeWriter(tmp_path / "tape", 2) as tape:
+        for _ in range(kept):
+            tape.begin()
+            tape.keep(HEADING)
+        raise KeyboardInterrupt
+    assert (tmp_path / "tape").read_bytes() == old
+    there = f", in {tmp_path / 'tape.part'}" if kept else ""
+    said = f"--tape {tmp_path / 'tape'}: not written; {kept} of 2 runs can be kept{there}\n"
+    assert capsys.readouterr().err == said
+    names = ["tape", "tape.part"] if kept else ["tape"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == names
+    assert not kept or list(recorded(tmp_path / "tape.part")) == [(HEADING, [])]
 
 
 @pytest.mark.parametrize("spoilt", [lambda octets: b"", lambda octets: octets[:-30], lambda octets: b"no tape at all"])
@@ -58,7 +76,7 @@ def test_a_tape_that_is_not_whole_is_refused(tmp_path, spoilt):
 
 def test_files_that_cannot_be_had_are_said(tmp_path):
     with pytest.raises(InputError, match="cannot be written"):
-        TapeWriter(tmp_path / "nowhere" / "tape")
+        TapeWriter(tmp_path / "nowhere" / "tape", 1)
     with pytest.raises(InputError, match="cannot be read"):
         list(recorded(tmp_path / "tape"))
 
@@ -108,6 +126,26 @@ def test_a_board_that_is_built_otherwise_is_refused_before_the_first_step(tape, 
     assert refused.exit_code == ExitCode.DIFFERS
     assert f"board file {heading.board} on the board, other on the tape; table " in refused.output
     assert "No step was done" in refused.output
+
+
+@pytest.mark.parametrize(
+    "option",
+    [
+        *("--check", "--resume", "--run creep", "--profile bench", "--seed 1", "--set speed_limit=100"),
+        *("--params none", "--scheme paper", "--jobs 1", "--cluster none", "--tape none"),
+    ],
+)
+def test_what_means_nothing_with_a_tape_is_refused(option):
+    refused = CliRunner().invoke(app, ["hil", "--play", "tape", "--port", "virtual", *option.split()])
+    assert refused.exit_code == ExitCode.BAD_INPUT
+    name = option.partition(" ")[0]
+    assert f"{name}: no meaning with --play, which asks one board what is on the tape" in refused.output
+
+
+def test_nothing_is_resumed_without_results():
+    refused = CliRunner().invoke(app, ["hil", "A10", "--resume", "--port", "virtual"])
+    assert refused.exit_code == ExitCode.BAD_INPUT
+    assert "--resume: leaves out what a file of results has; name it with --json FILE" in refused.output
 
 
 @pytest.mark.parametrize("arguments", [[], ["A10", "--play", "tape"]])

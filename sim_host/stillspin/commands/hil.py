@@ -13,7 +13,7 @@ from rich.console import Console
 
 from stillspin import core
 from stillspin.board import image as images
-from stillspin.commands.campaign_options import CampaignOptions, with_campaign_options
+from stillspin.commands.campaign_options import CampaignOptions, is_default, with_campaign_options
 from stillspin.commands.connection import DriveOption, wanted
 from stillspin.core import Progress
 from stillspin.counted import counted
@@ -35,6 +35,8 @@ from stillspin.revision import revision
 from stillspin.runs.workers import Where
 
 _VIRTUAL = "virtual"
+_WITH_PLAY = {"play", "port", "can", "where", "image", "rom", "file", "junit_file", "scenarios"}
+"""What means something where a tape is played: the board, and where the verdicts go."""
 
 
 @with_campaign_options
@@ -97,6 +99,10 @@ def hil(
         raise InputError(NEEDS_IMAGE)
     if (play is None) != bool(scenarios):
         raise InputError("name scenarios, such as A10, or give --play FILE: one of the two")
+    if play:
+        _refuse_what_a_tape_has(context)
+    if resume and not file:
+        raise InputError("--resume: leaves out what a file of results has; name it with --json FILE")
     board = _executing(context, image, rom, port or can or where) if image else _address(port, can, where)
     is_virtual = board.partition(":")[0] == _VIRTUAL
     if is_virtual and (tape or play):  # what a tape takes is said by one board
@@ -129,9 +135,20 @@ def hil(
     left = {number for number, run in enumerate(everything) if not (resume and _is_done(results, run, kind, of))}
     chosen = [everything[number] for number in runs.broad(everything) if number in left]
     skipped = [begun(run, kind, of) for number, run in enumerate(everything) if number not in left]
-    taken = context.with_resource(TapeWriter(tape)) if tape else None
+    taken = context.with_resource(TapeWriter(tape, len(chosen))) if tape else None
     rows = _on_virtual(chosen, kind, of, common.where) if is_virtual else _on_one(chosen, board, of, taken)
     _tell_all(rows, skipped, results, common.junit_file)
+
+
+def _refuse_what_a_tape_has(context: typer.Context) -> None:
+    """Options that say which runs there are, of what drive, and who does them."""
+    given = [
+        option.opts[0]
+        for option in context.command.params
+        if not is_default(context, option.name or "") and option.name not in _WITH_PLAY
+    ]
+    if given:
+        raise InputError(f"{', '.join(given)}: no meaning with --play, which asks one board what is on the tape")
 
 
 def _play(tape: Path, board: str, results: Results, junit_file: Path | None) -> None:

@@ -73,7 +73,7 @@ def played(file: Path, where: str, progress: Callable[[Heading], Progress]) -> I
     kind = address.parse(where).kind
     runs = recorded(file)
     if (first := next(runs, None)) is None:
-        raise InputError(f"--play {file}: there is no run on this tape: none was identical when it was made")
+        raise InputError(f"--play {file}: there is no run on this tape")
     with _loop(where) as loop:
         for heading, said in chain([first], runs):
             firmware = check_taped(loop.ask, heading).text

@@ -6,16 +6,22 @@ answers by turns, two octets of length and as many octets each, and an empty req
 
 from __future__ import annotations
 
+import errno
 import gzip
 import json
+import os
 import struct
+import sys
+import tempfile
 import zlib
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+from stillspin.counted import counted
 from stillspin.errors import InputError
 
 Pair = tuple[bytes, bytes]
@@ -45,20 +51,24 @@ class Heading:
 
 
 class TapeWriter:
-    """Takes what is said in a run, and keeps it when the run was good."""
+    """Takes what is said in a run, and keeps it when the run was good.
 
-    def __init__(self, file: Path) -> None:
-        """Begin the file anew.
+    It writes beside the file that is meant, which gets its new content when every run is there.
+    """
+
+    def __init__(self, file: Path, runs: int) -> None:
+        """Begin a tape of so many runs.
 
         Raises:
             InputError: it cannot be written.
         """
-        self._name = file
+        self._name, self._runs = file, runs
+        self._kept = 0
         self._said: list[Pair] = []
-        try:
-            self._raw = file.open("wb")
-        except OSError as error:
-            raise InputError(f"--tape {file}: cannot be written ({error.strerror})") from error
+        with self._telling():
+            if file.is_dir():
+                raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+            self._raw = tempfile.NamedTemporaryFile("wb", dir=file.absolute().parent, delete=False)  # noqa: SIM115
         self._out = gzip.GzipFile("", "wb", fileobj=self._raw, mtime=0)  # the same runs are the same octets
         self._out.write(_FIRST)
 
@@ -68,9 +78,22 @@ class TapeWriter:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
-        """What was kept is whole."""
-        self._out.close()
-        self._raw.close()
+        """The tape has its name; where runs are missing, one of its own, and no name where there are none."""
+        beside, is_whole = Path(self._raw.name), self._kept == self._runs
+        name = self._name if is_whole else self._name.with_name(f"{self._name.name}.part")
+        try:
+            with self._telling(), self._raw:
+                self._out.close()
+            if self._kept:
+                with self._telling():
+                    beside.chmod(0o644)
+                    beside.replace(name)
+        finally:
+            beside.unlink(missing_ok=True)
+        if not self._kept or not is_whole:
+            there = f", in {name}" if self._kept else ""
+            words = f"{self._kept} of {counted(self._runs, 'run')} can be kept{there}"
+            print(f"--tape {self._name}: not written; {words}", file=sys.stderr)
 
     def begin(self) -> None:
         """A run; what was said in one that was not kept is forgotten."""
@@ -86,12 +109,18 @@ class TapeWriter:
         Raises:
             InputError: it cannot be written.
         """
-        try:
+        with self._telling():
             self._out.write(json.dumps(asdict(heading)).encode() + b"\n")
             for pair in self._said:
                 for octets in pair:
                     self._out.write(_LENGTH.pack(len(octets)) + octets)
             self._out.write(_LENGTH.pack(0))
+        self._kept += 1
+
+    @contextmanager
+    def _telling(self) -> Iterator[None]:
+        try:
+            yield
         except OSError as error:
             raise InputError(f"--tape {self._name}: cannot be written ({error.strerror})") from error
 
