@@ -10,6 +10,7 @@ from in_process import stillspin
 
 from stillspin import core
 from stillspin.c28x import timed
+from stillspin.c28x.program import assemble
 from stillspin.flash import coff as coff_files
 from stillspin.flash.program import Block, Program
 from stillspin.image import vectors
@@ -176,3 +177,29 @@ def test_without_names_there_are_addresses(tmp_path):
     done = run_command(image, "--after", "0.02", "--for", "0.002")
     assert f"INT1.1 0x{program('control').symbols['SAMPLE']:06X}" in done.stdout
     assert "(no name)" in done.stdout
+
+
+STACK = """
+        .org 0x9000
+start:  MOV @SP,#0x200
+        LCR below
+stay:   SB stay,UNC
+below:  ADDB SP,#10
+        SUBB SP,#10
+        LRETR
+"""
+
+
+@pytest.mark.parametrize(
+    ("room", "says"),
+    [
+        (((b".stack", 0x200, 0x40),), "stack: up to 0x020C, 12 of 64 words from 0x0200"),
+        ((), "stack: up to 0x020C"),
+    ],
+)
+def test_a_stack_begins_where_the_program_says(tmp_path, room, says):
+    """Below the place where the boot ROM has its own, as many programs of TI's have it."""
+    image = tmp_path / "stack.out"
+    made = [Block(first, tuple(words)) for first, words in blocks(assemble(STACK).words)]
+    image.write_bytes(coff(made, entry=0x9000, empty=room))
+    assert run_command(image, "--for", "0.001").stdout.splitlines()[-1] == says

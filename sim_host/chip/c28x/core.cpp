@@ -5,6 +5,7 @@ namespace {
 
 constexpr std::uint32_t kTableHigh = 0x3FFFC0;  // the CPU's vector table with VMAP set; otherwise it is at 0
 constexpr unsigned kMaskable = 16;              // INT1..INT14, DLOGINT, RTOSINT
+constexpr std::uint16_t kMovSpConstant = 0x28AD;
 
 }  // namespace
 
@@ -54,6 +55,7 @@ void Core::execute(const Instruction& i) {
   if (profile_ == nullptr) return carry_out(i);
   const Spent before = spent();
   carry_out(i);
+  if (i.word0 == kMovSpConstant) profile_->begin_stack();
   profile_->spend(i.address, spent() - before - repeated_, r.sp);
   repeated_ = {};
 }

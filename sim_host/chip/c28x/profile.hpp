@@ -77,6 +77,9 @@ class Profile {
     left_ = true;
   }
 
+  /// The program has set the stack pointer: what was there before it is none of its stack.
+  void begin_stack() { highest_stack = 0; }
+
   /// The core was reset: nothing that was entered returns.
   void abandon() {
     open_.clear();

@@ -20,6 +20,7 @@ from stillspin.core_code import Interrupt, Spent
 from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
+from stillspin.flash import sections
 from stillspin.image import closed_loop, opened, vectors
 from stillspin.image.opened import Image
 from stillspin.options import ImageArgument, OtherMotorOption, ProfileOption, RomOption, SeedOption, number, whole
@@ -30,6 +31,7 @@ from stillspin.runs.execute import Job, Settings
 
 _STACK = 0x0400
 """Where the boot ROM leaves the stack pointer."""
+_STACK_SECTION = ".stack"
 _STACK_NAMES = ("__stack", "___stack")
 """Of the linker, where the stack begins."""
 _ELSEWHERE = "(code without a name)"
@@ -118,6 +120,16 @@ def _say_lines(image: Image, spent: Mapping[int, Spent], most: int) -> None:
         print(f"and {len(rows) - most} more (--lines)")
 
 
+def _of_the_stack(image: Image, highest: int) -> str:
+    """How much that is, as far as the image says where its stack begins, and of how much."""
+    room = [part for part in sections.read(image.file, image.program) if part.name == _STACK_SECTION]
+    addresses = image.names.addresses
+    begin = room[0].run if room else next((addresses[name] for name in _STACK_NAMES if name in addresses), _STACK)
+    if highest < begin:
+        return ""
+    return f", {counted(highest - begin, 'word', room[0].words if room else None)} from 0x{begin:04X}"
+
+
 class _Looked:
     """What an image did from a moment on."""
 
@@ -140,9 +152,7 @@ class _Looked:
         _say_functions(self._image, spent, self._most)
         if self._lines:
             _say_lines(self._image, spent, self._lines)
-        addresses = self._image.names.addresses
-        begin = next((addresses[name] for name in _STACK_NAMES if name in addresses), _STACK)
-        print(f"stack: up to 0x{stack:04X}, {counted(max(stack - begin, 0), 'word')} from 0x{begin:04X}")
+        print(f"stack: up to 0x{stack:04X}{_of_the_stack(self._image, stack)}")
 
 
 def _jobs(scenarios: Sequence[str], image: Image, profile_name: str, motor: str | None, seed: int) -> list[Job]:

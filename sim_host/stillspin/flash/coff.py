@@ -14,6 +14,7 @@ from stillspin.flash import layout
 from stillspin.flash.octets import readable
 from stillspin.flash.program import Block, Program, assemble
 
+KIND = "COFF"
 MAGIC = b"\xc2\x00"
 _TARGET = 0x009D
 _OTHERS = {
@@ -67,7 +68,7 @@ def _read(data: bytes, name: str) -> Program:
         for head in _heads(data)
         if head.is_loaded
     ]
-    return assemble(blocks, entry, "COFF", name, sections(data))
+    return assemble(blocks, entry, KIND, name, sections(data))
 
 
 class _Head(NamedTuple):

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
-from stillspin.flash import coff, elf
+from stillspin.flash import coff, coff_initial, elf, layout
 from stillspin.flash.memories import Extent
-from stillspin.flash.program import Program
+from stillspin.flash.program import Program, assemble
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,19 @@ def not_loaded(file: Path, program: Program, names: Iterable[str]) -> list[str]:
         return [name for name in names if kind and name not in loaded and any(kind.section(data, name))]
     except struct.error:
         return []
+
+
+def with_initial_values(file: Path, program: Program) -> Program:
+    """A program that is loaded into RAM with those of its variables that its loader sets (COFF, --ram_model).
+
+    Raises:
+        InputError: their table is damaged.
+    """
+    begins_in_flash = program.word(layout.BOOT_ENTRY) is not None
+    if begins_in_flash or program.kind != coff.KIND or not not_loaded(file, program, [coff_initial.SECTION]):
+        return program
+    blocks = coff_initial.read(file.read_bytes(), str(file))
+    return assemble([*program.blocks, *blocks], program.entry, program.kind, str(file))
 
 
 def read(file: Path, program: Program) -> list[Section]:

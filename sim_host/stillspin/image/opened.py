@@ -52,7 +52,7 @@ def look(file: Path, rom: Path | None = None) -> Image:
     Raises:
         InputError: it cannot be read.
     """
-    program = read_program(file)
+    program = sections.with_initial_values(file, read_program(file))
     there = names.read(file)
     blocks = [(block.address, list(block.words)) for block in read_boot_rom(rom)] if rom else []
     not_here = foreign.said(program, sections.read(file, program), there)

@@ -29,8 +29,9 @@ def _passwords(program: Program) -> list[str]:
 
 
 def _initial_values(file: Path, program: Program) -> list[str]:
+    """Of a program that begins in the flash; one in RAM has them (`sections.with_initial_values`)."""
     lost = sections.not_loaded(file, program, _OF_THE_START)
-    if not lost:
+    if not lost or program.word(layout.BOOT_ENTRY) is None:
         return []
     return [
         f"{', '.join(lost)}: initial values of variables that a debugger would load; from the flash they are not set: "
