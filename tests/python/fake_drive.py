@@ -60,6 +60,7 @@ class FakeDrive:
         self.lines = []  # of the console
         self.interrupts = 0
         self.dies = False  # with the next line of the console
+        self.tells = b""  # unasked, behind the prompt of Ctrl-C
         self.watched = False  # a line of `watch` again and again
         self.refusals = 0  # lines of console that were not carried out
         self.setup = None
@@ -139,7 +140,7 @@ class FakeDrive:
             self.watched = False
             if octet == 3:
                 self.typed, self.interrupts = b"", self.interrupts + 1
-                self._line.write(b"^C\r\n> ")
+                self._line.write(b"^C\r\n> " + self.tells)
             elif octet == 13:
                 line, self.typed = self.typed, b""
                 self._obey(line)

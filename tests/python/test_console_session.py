@@ -135,6 +135,12 @@ def test_a_line_that_was_left_is_emptied_and_an_abandoned_watch_is_not_shown(ask
     assert "rpm" not in result.stdout
 
 
+def test_what_the_drive_tells_unasked_while_a_session_begins_is_no_lost_connection(ask, fake):
+    fake.tells = b"\r\n! nothing was heard for link_timeout: the motor stops\r\n\r> \x1b[K"
+    result = ask("console", "-c", "version")
+    assert (result.exit_code, fake.lines) == (ExitCode.DONE, ["version"]), result.stderr
+
+
 def test_a_watch_does_not_outlive_its_session(ask, fake):
     ask("console", "-c", "watch")
     assert fake.lines == ["watch"]

@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
 
+from stillspin.commands.transcript import is_prompt
 from stillspin.drive import Drive
 from stillspin.drive.requester import wait_until
 from stillspin.drive.state import ENERGISED, STOP
@@ -22,7 +23,6 @@ from stillspin.link.errors import DriveError, NoAnswerError
 
 LINE_END = b"\r"
 CTRL_C = b"\x03"
-_PROMPT = b"> "
 _QUIET = 0.2
 """Seconds without a character behind a prompt: nothing runs any more."""
 _PATIENCE = 3.0
@@ -70,7 +70,7 @@ class Session:
             self.interrupt()
             end = time.monotonic() + _PATIENCE
             while time.monotonic() < end:
-                if not came.wait(_QUIET) and heard.endswith(_PROMPT):
+                if not came.wait(_QUIET) and is_prompt(heard.rpartition(b"\n")[2].decode("ascii", "replace")):
                     return
                 came.clear()
         raise NoAnswerError(f"no prompt from the console on {self._drive.link.transport.name}")

@@ -29,7 +29,7 @@ class Transcript:
         *lines, rest = text.split("\n")
         shown = [line for line in map(self._clean, lines) if line is not None]
         self.rest = rest
-        if self._expected is None and _plain(rest) == PROMPT.strip():
+        if self._expected is None and is_prompt(rest):
             self.rest, self.answered = "", True
         return shown
 
@@ -39,6 +39,11 @@ class Transcript:
             self._expected = None
             return None
         return words if words else None
+
+
+def is_prompt(line: str) -> bool:
+    """Whether the console waits behind this, with nothing typed."""
+    return _plain(line) == PROMPT.strip()
 
 
 def _plain(line: str) -> str:
