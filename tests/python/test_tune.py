@@ -232,6 +232,28 @@ def test_the_motor_stops_when_the_page_lets_go_or_is_closed(server, fake):
     assert wait_until(lambda: fake.state != RUN, 10)
 
 
+@pytest.mark.parametrize("lost", [1, 8], ids=["a slow answer", "no answer"])
+def test_a_stop_that_failed_is_told_and_one_that_took_its_time_is_not(server, fake, lost):
+    """The watch comes by every 0.1 s; an answer is waited for 0.3 s, and four times."""
+
+    async def conversation(page):
+        await page.ask("start", speed=300)
+        fake.swallow += [Request.COMMAND] * lost
+        reply = await page.ask("stop")
+        assert ("error" in reply) == (lost > 1)
+        while lost > 1 and not told(page):
+            await page.hear("note")
+        for _ in range(3):  # rounds of the watch
+            await page.hear("status")
+        assert told(page) == (lost > 1)
+        assert fake.state != RUN
+
+    def told(page):
+        return any(message.get("text") == "stopped; it took more than one try" for message in page.seen)
+
+    talk(server, conversation)
+
+
 def test_a_page_that_goes_leaves_the_motor_of_another_alone_but_its_stop_is_for_everybody(server, fake, clock):
     async def is_closed(page):
         await page.ask("start", speed=300)

@@ -12,6 +12,7 @@ from stillspin.tune.messages import Tell, status_message
 from stillspin.tune.streamer import Streamer
 
 _STATUS = 0.1
+_AGAIN = "stopped; it took more than one try"
 
 
 class Watch(threading.Thread):
@@ -23,21 +24,29 @@ class Watch(threading.Thread):
         super().__init__(name="stillspin watch", daemon=True)
         self._way, self._dead_man, self._streamer = way, dead_man, streamer
         self._tell, self._end = tell, end
-        self._owed = ""
-        """Why the motor must still be stopped; empty when it must not."""
+        self._owed: str | None = None
+        """That the motor must still be stopped: what is told when it is, empty for nothing."""
         self._whoever = False
         """Whether it must be stopped also when somebody else has started it."""
         self._away = False
 
     def stop(self) -> None:
         """Stop, whoever holds it; what fails is tried again here, and nothing else is asked until then."""
-        self._owe("stopped; it took more than one try", whoever=True)
-        self._settle()
+        self._try(whoever=True)
 
     def let_go(self) -> bool:
         """The same for a motor that runs by a start of this page's, and for no other; whether it did."""
-        self._owe("stopped; it took more than one try")
-        return self._settle()
+        return self._try(whoever=False)
+
+    def _try(self, *, whoever: bool) -> bool:
+        """At once. The watch, which comes by meanwhile, tries as well, and tells it only when this has failed."""
+        self._owe("", whoever=whoever)
+        try:
+            return self._settle()
+        except DriveError:
+            if self._owed is not None:
+                self._owed = _AGAIN
+            raise
 
     def _owe(self, why: str, *, whoever: bool = False) -> None:
         self._owed, self._whoever = why, whoever
@@ -47,7 +56,7 @@ class Watch(threading.Thread):
         stopped = self._whoever or drive.let_go()
         if self._whoever:
             drive.stop()
-        self._owed = ""
+        self._owed = None
         return stopped
 
     def run(self) -> None:
@@ -68,7 +77,7 @@ class Watch(threading.Thread):
     def _look(self) -> None:
         if self._dead_man.expired():
             self._owe("stopped: nothing was heard from the page")
-        if (why := self._owed) and self._settle():
+        if (why := self._owed) is not None and self._settle() and why:
             self._tell({"t": "note", "text": why})
         self._tell(status_message(self._way.drive.describe_status(self._way.look())))
 
@@ -78,7 +87,7 @@ class Watch(threading.Thread):
         if self._dead_man.release():
             self._owe("stopped: the connection to the drive was lost")
         if isinstance(error, SwitchedOnError):
-            self._owed = ""
+            self._owed = None
             self._tell({"t": "note", "text": str(error)})
         self._say_away("lost")
 
