@@ -159,10 +159,46 @@ def test_every_form_is_executed_and_changes_the_status_bits_that_the_table_says(
         ("SETC INTM,DBGM", [0x3B30]),
         ("SPM -6", [0xFF6F]),
         ("NOP", [0x7700]),
+        # Below zero, without @, and RTS's own name of a return, as TI's sources have them.
+        ("MOV AL,#-1", [0x28A9, 0xFFFF]),
+        ("MOV ACC,#-1000", [0xFF20, 0xFC18]),
+        ("MOV T,AL", [0x2DA9]),
+        ("FFCRET *XAR7", [0x7620]),
     ],
 )
 def test_known_words(text, words):
     assert assemble_line(text, 0) == words
+
+
+LISTED = """
+28ad 0200  MOV SP,#0x0200            | 561f       SETC OBJMODE             | 561a       SETC M0M1MAP
+2940       CLRC PAGE0                | b9c0       MOVZ DP,#0x1c0           | 761b       ASP
+76ff 8b92  MOVL XAR7,#0x3f8b92       | 24a9       PREAD AL,*XAR7           | 2486       PREAD *XAR6++,*XAR7
+f7a1       RPT AR1                   | 81a1       ADD ACC,AR1              | 3b04       SETC TC
+0009 ffec  BANZ -20,AR1--            | 611b       SB 27,EQ                 | effd       SBF -3,NTC
+56c1 fe97  BF -361,EQ                | ffef 0196  B 406,UNC                | 007f 8b80  LB 0x3f8b80
+3e67       LCR *XAR7                 | c3bd       MOVL *SP++,XAR7          | c5be       MOVL XAR7,*--SP
+ff58       TEST ACC                  | ff5c       NEG AL                   | 7608       PUSH ST1
+ff2f 0280  MOV ACC,#0x280 << 15      | ff0b 07af  SUB ACC,#0x7af << 11     | ff1f 007d  ADD ACC,#0x7d << 15
+ff20 0400  MOV ACC,#1024             | 28ab ffff  MOV PL,#0xffff           | 1ba9 8888  CMP AL,#-30584
+56bf 014a  MOVB *-SP[10],#0x01,UNC   | 56b0 0141  MOVB *-SP[1],#0x01,NEQ   | 2b4a       MOV *-SP[10],#0
+5603 0141  MOV ACC,*-SP[1] << 1      | 5608 0080  AND ACC,#0x0080 << 16    | 0fab       CMPL ACC,P
+5601 00a4  ADDL XAR4,ACC             | ff31       LSL ACC,2                | ff43       SFR ACC,4
+ffc2       LSR AL,3                  | ff80       LSL AL,1                 | cd21 fff0  AND AH,@0x21,#0xfff0
+f5a9 0882  MOV AL,*(0:0x0882)        | f4a9 7077  MOV *(0:0x7077),AL       | f541 7077  MOV *-SP[1],*(0:0x7077)
+5663 0002  QMPYL ACC,XT,@0x2         | 87a9       MOVL XT,ACC              | 1934       SUBB ACC,#52
+9694       MOV *+XAR4[AR0],AL        | d480       MOVB XAR4,#0x80          | de81       SUBB XAR6,#1
+0da7       ADDU ACC,AR7              | 88c4       MOVZ AR6,*+XAR4[0]       | 96dc       MOV *+XAR4[3],AL
+92be       MOV AL,*--SP              | caa8       OR AL,@AH                | cec4       AND AL,*+XAR4[0]
+402f       TBIT @0x2f,#0x0           | 900f       ANDB AL,#0xf             | 1ca9 ffff  XOR AL,#0xffff
+"""
+"""What cl2000 6.1 and the libraries of TI come to, by TI's own disassembler. Its branches say how far."""
+
+
+@pytest.mark.parametrize("row", [row.strip() for line in LISTED.splitlines() for row in line.split("|") if row.strip()])
+def test_words_are_what_ti_s_disassembler_says(row):
+    words, text = re.fullmatch(r"((?:[0-9a-f]{4} )+) *([A-Z].*)", row).groups()
+    assert assemble_line(text, 0) == [int(word, 16) for word in words.split()]
 
 
 @pytest.mark.parametrize(
@@ -175,6 +211,7 @@ def test_known_words(text, words):
         ("MOVL ACC,@AH", "no location of 32 bits"),
         ("SB 0x2000,EQ", "not within -128 to 127"),
         ("LSL AL,#17", "not within 1 to 16"),
+        ("MOV AL,#-32769", "-32769 is not within -32768 to 65535"),
     ],
 )
 def test_what_is_no_instruction_says_why(text, says):

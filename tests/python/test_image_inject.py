@@ -72,6 +72,19 @@ def test_a_register_that_is_not_put_back_is_found(tried):
     assert (first.before, first.value) == (0x12345, 0x8000)
 
 
+@pytest.mark.parametrize(
+    ("replaced", "spoilt"),
+    [(None, set()), (("PUSH    RPC", "NOP\n        ADDB    SP,#2"), {"RPC"}), (("PUSH    XT", "PUSH    XAR5"), {"XT"})],
+)
+def test_an_interrupt_may_call_the_function_that_it_came_into(tried, replaced, spoilt):
+    """It saves what cl2000 saves; only what it forgets is found, wherever it comes."""
+    report, at = tried("divides", "loop", "behind", TICK, replaced=replaced)
+    assert len(report.executed) == 18
+    assert at["divide"] in report.executed
+    assert report.differences == report.unclear == report.held_off == []
+    assert {one.what for _, registers in report.spoilt for one in registers} == spoilt
+
+
 def test_an_interrupt_that_is_off_is_said_to_be(tried):
     with pytest.raises(CampaignError, match="never taken"):
         tried("shared", "torn", "whole", 39)

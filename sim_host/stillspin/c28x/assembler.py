@@ -88,6 +88,7 @@ _OTHER_SPELLINGS = tuple(
         (r"(MOVH? [^,]+,ACC<<)([^#].*)", r"\1#\2"),
         (r"((?:LSL|LSR|ASR|SFR|LSL64|LSR64|ASR64) [^,]+,)([^#T].*)", r"\1#\2"),
         (r"SPM #(.+)", r"SPM \1"),
+        (r"FFCRET (.+)", r"LB \1"),
         (r"SUB ([^,]+),#(.+)", r"ADD \1,#-(\2)"),  # there is no such code of its own
     )
 )

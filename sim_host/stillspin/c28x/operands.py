@@ -32,7 +32,7 @@ _WORDS = {
 _LONGS = {**{f"@XAR{n}": 0xA0 + n for n in range(8)}, "@ACC": 0xA9, "@P": 0xAB, "@XT": 0xAC}
 _REGISTERS = {16: _WORDS, 32: _LONGS}
 _NAMES = {bits: {code: text for text, code in {**_INDIRECT, **there}.items()} for bits, there in _REGISTERS.items()}
-_OTHER = {"@T": "@TH", **{f"*XAR{n}": f"*+XAR{n}[0]" for n in range(8)}}
+_OTHER = {"@T": "@TH", "T": "@TH", **{f"*XAR{n}": f"*+XAR{n}[0]" for n in range(8)}}
 
 Evaluate = Callable[[str], int]
 """The value of an expression. ValueError: it is none."""
@@ -114,7 +114,7 @@ OPERANDS = {
     "*(PA)": Operand("C", r"\*\(([^,:]+)\)"),
     "0:pma": Operand("C", r"0:([^,]+)"),
     "#22bit": Operand("C", _NUMBER),
-    "#16bit": Operand("C", _NUMBER),
+    "#16bit": Operand("C", _NUMBER, -0x8000),
     "#10bit": Operand("C", _NUMBER),
     "#0..15": Operand("S", _NUMBER),
     "#1..15": Operand("S", _NUMBER, 1),

@@ -13,8 +13,9 @@ import os
 import pickle
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
+from stillspin.board.desk import TICKS_PER_SECOND
 from stillspin.core_board import NativeBoard
 from stillspin.counted import counted
 from stillspin.errors import CampaignError
@@ -98,6 +99,28 @@ class _Tried:
     """None: the end did not come."""
 
 
+class _Place(NamedTuple):
+    """Where a program is. An interrupt may call the very function that it came into: the stack tells the two apart."""
+
+    address: int
+    stack: int
+
+    def is_at(self, board: NativeBoard) -> bool:
+        """Whether a halted board is there."""
+        registers = board.registers()
+        return (registers["PC"], registers["SP"]) == self
+
+    def run_to(self, board: NativeBoard, seconds: float) -> bool:
+        """Let time pass until the program is there; false: it never was."""
+        end = board.now + round(seconds * TICKS_PER_SECOND)
+        while (left := end - board.now) > 0:
+            if not opened.run_to(board, [self.address], left / TICKS_PER_SECOND):
+                return False
+            if self.is_at(board):
+                return True
+        return False
+
+
 def inject(board: NativeBoard, stretch: Stretch, progress: Callable[[int], None] | None = None) -> Report:
     """Go through a stretch once and try the interrupt at each instruction.
 
@@ -114,14 +137,15 @@ def inject(board: NativeBoard, stretch: Stretch, progress: Callable[[int], None]
             f"0x{stretch.begin:06X}, the beginning, was not reached within {stretch.seconds:g} s; give it longer with "
             "--within"
         )
-    lost_at = _in_a_copy(lambda: _where_lost(board, stretch))
-    if lost_at is not None:
+    reached, there = _in_a_copy(lambda: (opened.run_to(board, [stretch.end], stretch.seconds), board.registers()))
+    if not reached:
         raise CampaignError(
             f"0x{stretch.end:06X}, the end, was not reached within {stretch.seconds:g} s; the program is at "
-            f"0x{lost_at:06X}; give it longer with --within"
+            f"0x{there['PC']:06X}; give it longer with --within"
         )
-    tried = [_try(board, stretch, first=True)]
-    while len(tried) == 1 or tried[-1].address != stretch.end:
+    end = _Place(stretch.end, there["SP"])
+    tried = [_try(board, stretch, end, first=True)]
+    while len(tried) == 1 or not end.is_at(board):
         if len(tried) > stretch.most:
             raise CampaignError(
                 f"0x{stretch.end:06X}, the end, was not reached within {counted(stretch.most, 'instruction')}; the "
@@ -131,41 +155,36 @@ def inject(board: NativeBoard, stretch: Stretch, progress: Callable[[int], None]
             raise CampaignError(
                 f"the CPU slept for {stretch.seconds:g} s within the stretch; give it longer with --within"
             )
-        tried.append(_try(board, stretch))
+        tried.append(_try(board, stretch, end))
         if progress:
             progress(len(tried))
     return _compared(tried)
 
 
-def _where_lost(board: NativeBoard, stretch: Stretch) -> int | None:
-    """Where the program is when it has not come to the end in time, without an interrupt that was asked for."""
-    return None if opened.run_to(board, [stretch.end], stretch.seconds) else board.registers()["PC"]
-
-
-def _try(board: NativeBoard, stretch: Stretch, *, first: bool = False) -> _Tried:
+def _try(board: NativeBoard, stretch: Stretch, end: _Place, *, first: bool = False) -> _Tried:
     """Ask for the interrupt now, in a copy of the board."""
     there, interrupts = board.registers(), board.statistics()["interrupts"]
-    address = there["PC"]
-    behind = address == stretch.end and not first  # only an interrupt that comes at once is one behind the stretch
+    here = _Place(there["PC"], there["SP"])
+    behind = here == end and not first  # only an interrupt that comes at once is one behind the stretch
 
     def run() -> _AtEnd | None:
         board.raise_interrupt(stretch.vector)
         spoilt: list[Difference] = []
         at_once = _comes_at_once(board)
         if at_once:
-            if not opened.run_to(board, [address], stretch.seconds):
+            if not here.run_to(board, stretch.seconds):
                 return None
             spoilt = [
                 Difference(name, value, there[name], there[name])
                 for name, value in board.registers().items()
                 if name not in _LATER and value != there[name]
             ]
-        there_already = behind if at_once else board.registers()["PC"] == stretch.end
-        if (behind and not at_once) or not (there_already or opened.run_to(board, [stretch.end], stretch.seconds)):
+        there_already = behind if at_once else end.is_at(board)
+        if (behind and not at_once) or not (there_already or end.run_to(board, stretch.seconds)):
             return None
         return _AtEnd(_look(board, stretch.watched), board.statistics()["interrupts"], spoilt)
 
-    return _Tried(address, interrupts, _in_a_copy(run))
+    return _Tried(here.address, interrupts, _in_a_copy(run))
 
 
 def _comes_at_once(board: NativeBoard) -> bool:
@@ -188,7 +207,7 @@ def _below_the_stack(pointer: int) -> Watched:
     return [(first, (pointer if first <= pointer < end else end) - first) for first, end in layout.RAM]
 
 
-def _in_a_copy(work: Callable[[], _Found | None]) -> _Found | None:
+def _in_a_copy(work: Callable[[], _Found]) -> _Found:
     """What a copy of this process finds."""
     reader, writer = os.pipe()
     child = os.fork()
@@ -205,7 +224,7 @@ def _in_a_copy(work: Callable[[], _Found | None]) -> _Found | None:
     os.waitpid(child, 0)
     if not octets:
         raise CampaignError("the chip could not go on in the stretch, or after an interrupt that was asked for in it")
-    found: _Found | None = pickle.loads(octets)  # this program's own words
+    found: _Found = pickle.loads(octets)  # this program's own words
     return found
 
 
