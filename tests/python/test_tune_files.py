@@ -8,7 +8,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from stillspin import csv_table
-from stillspin.commands import parameter_file
+from stillspin.drive import parameter_file
 from stillspin.drive.requester import wait_until
 from stillspin.errors import InputError
 from stillspin.tune.history import History

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 
+from stillspin import whole_file
 from stillspin.core_board import NativeBoard
 from stillspin.counted import counted
 from stillspin.errors import InputError
@@ -31,8 +31,9 @@ def insert(board: NativeBoard, file: Path) -> None:
 
 
 def keep(board: NativeBoard, file: Path) -> None:
-    """Write the content; the file is replaced as a whole."""
-    with tempfile.NamedTemporaryFile("wb", dir=file.absolute().parent, delete=False) as new:
-        new.write(board.eeprom)
-    Path(new.name).chmod(0o644)
-    Path(new.name).replace(file)
+    """Write the content; the file is replaced as a whole.
+
+    Raises:
+        InputError: it cannot be written.
+    """
+    whole_file.write(file, board.eeprom, "--eeprom")

@@ -14,9 +14,8 @@ import typer
 from cantools.database import Database
 from cantools.database.errors import Error as DatabaseError
 
-from stillspin import scales
+from stillspin import scales, whole_file
 from stillspin.can import text_of
-from stillspin.commands import parameter_file
 from stillspin.commands.connection import opened
 from stillspin.errors import InputError
 from stillspin.link import address
@@ -66,7 +65,7 @@ def bus(
     if export:
         with opened(where) as drive:
             told = text_of(drive.has_faults(), wanted.options["node"], scales.of(drive.parameters()))
-            parameter_file.write(export, told)
+            whole_file.write(export, told)
             print(f"node {wanted.options['node']}, {drive.identity.text}; see {export}")
         return
     only = wanted.options["node"] if "node=" in where else None

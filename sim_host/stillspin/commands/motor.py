@@ -10,12 +10,12 @@ from typing import Annotated
 
 import typer
 
-from stillspin import catalogue, core
+from stillspin import catalogue, core, whole_file
 from stillspin.called import called
 from stillspin.cases import flux_table, motor_check, nameplate, profile, questions, similarity
 from stillspin.cases.flux_table import Columns
 from stillspin.cases.motor_told import Motor
-from stillspin.commands import motor_defaults, parameter_file
+from stillspin.commands import motor_defaults
 from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
@@ -48,7 +48,7 @@ def list_(
     tables.catalogue(motors, verdicts)
     if out:
         content = {name: asdict(verdict) for name, verdict in verdicts.items()}
-        parameter_file.write(out, json.dumps(content, indent=1, ensure_ascii=False) + "\n")
+        whole_file.write(out, json.dumps(content, indent=1, ensure_ascii=False) + "\n")
 
 
 @app.command()
@@ -124,7 +124,7 @@ def new(
         "speed": speed,
     }
     answers = questions.read(typed)
-    parameter_file.write(file, questions.file_text(file.stem, answers))
+    whole_file.write(file, questions.file_text(file.stem, answers))
     stated = questions.stated(answers)
     plant = questions.plant(answers)
     told = {**nameplate.following(plant, stated), **stated}

@@ -8,14 +8,12 @@ from typing import Annotated
 
 import typer
 
-from stillspin import core
-from stillspin.commands import parameter_file
+from stillspin import core, whole_file
 from stillspin.commands.connection import DriveOption, opened, say_unsaved
-from stillspin.commands.parameter_file import Difference
 from stillspin.counted import counted
-from stillspin.drive import Drive
+from stillspin.drive import Drive, parameter_file
 from stillspin.exit_codes import ExitCode
-from stillspin.link.errors import DriveError, RefusedError
+from stillspin.link.errors import DriveError
 from stillspin.one_line_errors import OneLineErrors
 from stillspin.report import tables
 
@@ -51,7 +49,7 @@ def dump(
         about = [f"Parameters of a drive with firmware {drive.identity.text}."]
         content = parameter_file.text(values, drive.table, about)
     if file:
-        parameter_file.write(file, content)
+        whole_file.write(file, content)
         print(f"{counted(len(values), 'parameter')}; see {file}")
     else:
         print(content, end="")
@@ -98,7 +96,7 @@ def load(
         wanted = parameter_file.read(file, drive.table, drive.parameters())
         drive.set_scales(wanted)
         rows = parameter_file.differences(drive.parameters(), wanted, drive.table, wanted)
-        complaints = transfer(drive, rows)
+        complaints = parameter_file.put(drive, rows)
         tables.differences(rows, "before", str(file))
         if not complaints and save:
             drive.save()
@@ -110,25 +108,3 @@ def load(
         print(f"stillspin: {words}", file=sys.stderr)
     if complaints:
         raise DriveError(f"the drive does not take all of {file}{'; nothing was saved' if save else ''}")
-
-
-def transfer(drive: Drive, rows: list[Difference]) -> list[str]:
-    """Change parameters one by one. What does not fit yet is tried again when the others are in.
-
-    Returns:
-        What the drive says about those that it refused, or about the whole when it would not start with it.
-    """
-    waiting = [(parameter.name, value) for parameter, _, value in rows if value is not None]
-    while True:
-        again, refused, conflict = [], [], ""
-        for name, value in waiting:
-            try:
-                conflict = drive.change(name, value).conflict
-            except RefusedError as error:
-                again.append((name, value))
-                refused.append(str(error))
-        if not again:
-            return [conflict] if conflict else []
-        if len(again) == len(waiting):
-            return refused
-        waiting = again

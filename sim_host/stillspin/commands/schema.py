@@ -8,10 +8,9 @@ from typing import Annotated
 
 import typer
 
-from stillspin import core
+from stillspin import core, whole_file
 from stillspin.campaign import faults, spread
 from stillspin.cases import file_schema
-from stillspin.commands import parameter_file
 from stillspin.errors import InputError, did_you_mean
 from stillspin.resources import PACKAGE
 
@@ -34,7 +33,7 @@ def schema(
     if out is None:
         print(content, end="")
         return
-    parameter_file.write(out, content)
+    whole_file.write(out, content)
     print(f"see {out}; begin a {kind} file beside it with: #:schema ./{out.name}")
 
 

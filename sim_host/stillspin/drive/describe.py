@@ -12,9 +12,11 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from stillspin import whole_file
 from stillspin.counted import counted
 from stillspin.drive.protocol import VERSION, Request, StatusCode, Words
 from stillspin.drive.table import Parameter, Signal, Table
+from stillspin.errors import InputError
 from stillspin.link.errors import DifferentError, RefusedError
 
 Ask = Callable[[Request, bytes], bytes]
@@ -203,8 +205,6 @@ def _save(found: Table) -> None:
     data = {"format": _FORMAT, "version": found.version}
     data |= {"parameters": [asdict(entry) for entry in found.parameters]}
     data |= {"signals": [asdict(entry) for entry in found.signals]}
-    with contextlib.suppress(OSError):
+    with contextlib.suppress(OSError, InputError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        partial = path.with_suffix(f".{os.getpid()}")
-        partial.write_text(json.dumps(data), encoding="utf-8")
-        partial.replace(path)
+        whole_file.write(path, json.dumps(data))

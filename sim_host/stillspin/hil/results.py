@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-import tempfile
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from stillspin import whole_file
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.hil.loop import LoopResult
@@ -116,15 +116,7 @@ class Results:
         if not self._file:
             return
         text = json.dumps({"runs": [asdict(item) for item in self.rows.values()]}, indent=1) + "\n"
-        try:
-            with tempfile.NamedTemporaryFile(
-                "w", dir=self._file.absolute().parent, delete=False, encoding="utf-8"
-            ) as beside:
-                beside.write(text)
-            Path(beside.name).chmod(0o644)
-            Path(beside.name).replace(self._file)
-        except OSError as error:
-            raise InputError(f"--json {self._file}: cannot be written ({error.strerror})") from error
+        whole_file.write(self._file, text, "--json")
 
     def _read(self, file: Path) -> None:
         try:

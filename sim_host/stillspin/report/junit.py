@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -12,8 +11,7 @@ from typing import Annotated, Self
 
 import typer
 
-from stillspin import __version__
-from stillspin.errors import InputError
+from stillspin import __version__, whole_file
 from stillspin.hil.results import Row
 from stillspin.resources import natural_key
 from stillspin.revision import revision
@@ -86,22 +84,11 @@ class Report:
         return TestCase(self._name, self._name, kind="error", words=words)
 
     def _write(self, cases: list[TestCase]) -> None:
-        file = self._file
-        if not file:
+        if not self._file:
             return
-        tree = ET.ElementTree(_tree(self._name, cases, self._about))
+        tree = _tree(self._name, cases, self._about)
         ET.indent(tree)
-        try:
-            with tempfile.NamedTemporaryFile("wb", dir=file.absolute().parent, delete=False) as beside:
-                tree.write(beside, encoding="utf-8", xml_declaration=True)
-            partial = Path(beside.name)
-            try:
-                partial.chmod(0o644)
-                partial.replace(file)
-            finally:
-                partial.unlink(missing_ok=True)
-        except OSError as error:
-            raise InputError(f"--junit {file}: cannot be written ({error.strerror})") from error
+        whole_file.write(self._file, ET.tostring(tree, encoding="utf-8", xml_declaration=True), "--junit")
 
 
 def _tree(name: str, cases: list[TestCase], properties: Mapping[str, str]) -> ET.Element:

@@ -9,8 +9,7 @@ from typing import Any
 
 from aiohttp import web
 
-from stillspin.commands import parameter_file
-from stillspin.commands.params import transfer
+from stillspin.drive import parameter_file
 from stillspin.errors import InputError
 from stillspin.link.errors import DriveError
 from stillspin.tune.workbench import Workbench
@@ -55,7 +54,7 @@ def load(bench: Workbench, name: str, text: str) -> dict[str, Any]:
             raise InputError(str(error).replace(f"{directory}/", "")) from None
     bench.drive.set_scales(wanted)
     rows = parameter_file.differences(bench.drive.parameters(), wanted, bench.drive.table, wanted)
-    complaints = transfer(bench.drive, rows)
+    complaints = parameter_file.put(bench.drive, rows)
     values = bench.drive.parameters()
     bench.streamer.learn(values)
     return {"values": values, "named": len(wanted), "different": len(rows), "complaints": complaints}

@@ -14,9 +14,8 @@ from typing import Any
 from stillspin import core, scales
 from stillspin.cases import motor_check, nameplate, profile, questions, similarity
 from stillspin.cases.motor_told import Finding, Motor
-from stillspin.commands import parameter_file
-from stillspin.commands.params import transfer
 from stillspin.counted import counted
+from stillspin.drive import parameter_file
 from stillspin.drive.table import Parameter, Table
 from stillspin.entry import Entry
 from stillspin.errors import InputError
@@ -100,7 +99,8 @@ def use(bench: Workbench, typed: Mapping[str, Any]) -> Message:
     now = drive.parameters()
     follows = _following(_answers(typed, now), now, drive.table)
     drive.set_scales(follows)
-    complaints = transfer(drive, parameter_file.differences(drive.parameters(), follows, drive.table, follows))
+    rows = parameter_file.differences(drive.parameters(), follows, drive.table, follows)
+    complaints = parameter_file.put(drive, rows)
     values = drive.parameters()
     bench.streamer.learn(values)
     return {"values": values, "complaints": complaints}

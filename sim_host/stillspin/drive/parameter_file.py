@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from stillspin import toml_table
+from stillspin.drive.drive import Drive
 from stillspin.drive.table import Parameter, Table
 from stillspin.errors import InputError
+from stillspin.link.errors import RefusedError
 
 
 def text(values: Mapping[str, float], table: Table, about: Sequence[str]) -> str:
@@ -31,21 +32,6 @@ def number(parameter: Parameter, value: float) -> str:
     """A value with all digits that make it this value, and at least the table's decimals."""
     short = f"{value:.{parameter.decimals}f}"
     return short if float(short) == value else repr(value)
-
-
-def write(path: Path, content: str) -> None:
-    """Write a file that appears whole or not at all.
-
-    Raises:
-        InputError: it cannot be written.
-    """
-    try:
-        with tempfile.NamedTemporaryFile("w", dir=path.absolute().parent, delete=False, encoding="utf-8") as file:
-            file.write(content)
-        Path(file.name).chmod(0o644)
-        Path(file.name).replace(path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror})") from error
 
 
 def read(path: Path, table: Table, now: Mapping[str, float]) -> dict[str, float]:
@@ -95,3 +81,25 @@ def differences(
     chosen = dict.fromkeys(names if names is not None else [*one, *other])
     rows = [(table.parameter(name), one.get(name), other.get(name)) for name in chosen]
     return [row for row in rows if row[1] != row[2]]
+
+
+def put(drive: Drive, rows: Sequence[Difference]) -> list[str]:
+    """Change parameters one by one. What does not fit yet is tried again when the others are in.
+
+    Returns:
+        What the drive says about those that it refused, or about the whole when it would not start with it.
+    """
+    waiting = [(parameter.name, value) for parameter, _, value in rows if value is not None]
+    while True:
+        again, refused, conflict = [], [], ""
+        for name, value in waiting:
+            try:
+                conflict = drive.change(name, value).conflict
+            except RefusedError as error:
+                again.append((name, value))
+                refused.append(str(error))
+        if not again:
+            return [conflict] if conflict else []
+        if len(again) == len(waiting):
+            return refused
+        waiting = again
