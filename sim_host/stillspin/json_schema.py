@@ -53,7 +53,7 @@ def _complaint(error: Any, here: str) -> InputError:
         known = schema.get("properties", {})
         unknown = next(key for key in value if key not in known)
         return InputError(f"{here}: unknown key '{unknown}'{did_you_mean(unknown, known)}")
-    number = _number(schema)
+    number = number_range(schema)
     if number is not None and isinstance(value, int | float) and not isinstance(value, bool):
         try:
             number.read(value, here)
@@ -69,7 +69,7 @@ def _parts(schema: Json) -> list[Json]:
     return list(schema.get("anyOf", [schema]))
 
 
-def _number(schema: Json) -> Range | None:
+def number_range(schema: Json) -> Range | None:
     """The range of a number, if it may be one."""
     for part in _parts(schema):
         if part.get("type") in {"number", "integer"}:
@@ -90,7 +90,7 @@ def allowed(schema: Json) -> str:
         return " or ".join(map(allowed, schema["anyOf"]))
     if "enum" in schema:
         return "one of " + ", ".join(map(str, schema["enum"]))
-    number = _number(schema)
+    number = number_range(schema)
     if number:
         bounds = "" if number.low is None and number.high is None else f", {number}"
         return f"{'a whole number' if number.whole else 'a number'}{bounds}"

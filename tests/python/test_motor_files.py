@@ -335,7 +335,12 @@ def test_who_gives_up_at_a_question_is_told_that_nothing_was_done(tmp_path, ctrl
 
 
 @pytest.mark.parametrize(
-    ("flag", "typed", "words"), [("--pole-pairs", "2.5", "not a whole number"), ("--emf", "1,5", "no comma")]
+    ("flag", "typed", "words"),
+    [
+        ("--pole-pairs", "2.5", "not a whole number"),
+        ("--emf", "1,5", "no comma"),
+        ("--rated-current", "0.01", "machine.rated_peak_current: 0.0141421 A is out of range; 0.1 … 1000 A"),
+    ],
 )
 def test_a_wrong_answer_is_bad_input_and_writes_nothing(native, tmp_path, flag, typed, words):
     path = tmp_path / "new.toml"

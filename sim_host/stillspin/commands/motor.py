@@ -10,12 +10,12 @@ from typing import Annotated
 
 import typer
 
-from stillspin import catalogue, core, whole_file
+from stillspin import catalogue, core, json_schema, whole_file
 from stillspin.called import called
 from stillspin.cases import flux_table, motor_check, nameplate, profile, questions, similarity
 from stillspin.cases.flux_table import Columns
 from stillspin.cases.motor_told import Motor
-from stillspin.commands import motor_defaults
+from stillspin.commands import motor_defaults, schema
 from stillspin.counted import counted
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
@@ -59,10 +59,10 @@ def check(
 ) -> None:
     """Say what will work with a motor and what will not, with numbers; exit status 1 when something will not."""
     native = core.load()
-    schema, known = core.plant_schema(native), core.parameters(native)
-    chosen = profile.load(profile_name, schema, known, file, checked=False)
+    entries, known = core.plant_schema(native), core.parameters(native)
+    chosen = profile.load(profile_name, entries, known, file, checked=False)
     known = core.at_scale(known, chosen.parameters)
-    found = motor_check.findings(Motor(chosen, schema, known), native)
+    found = motor_check.findings(Motor(chosen, entries, known), native)
     for words in chosen.not_stated:
         print(f"note   {words}")
     for words in motor_defaults.notes(known, chosen.plant, chosen.parameters, chosen.by_rule):
@@ -124,15 +124,25 @@ def new(
         "speed": speed,
     }
     answers = questions.read(typed)
+    plant = questions.plant(answers)
+    _expect_in_range(plant)
     whole_file.write(file, questions.file_text(file.stem, answers))
     stated = questions.stated(answers)
-    plant = questions.plant(answers)
     told = {**nameplate.following(plant, stated), **stated}
     known = core.at_scale(core.known_parameters(), told)
     sized = similarity.follow(plant, told, known)
     for words in motor_defaults.notes(known, plant, told | sized, sized):
         print(words)
     print(f"{file} written; what will work with it: {called()} motor check {file}")
+
+
+def _expect_in_range(plant: core.Plant) -> None:
+    """Complain about what no motor's file may say."""
+    sections = json.loads(schema.text("motor"))["properties"]
+    for section, values in plant.items():
+        for key, value in values.items():
+            if allowed := json_schema.number_range(sections[section]["properties"][key]):
+                allowed.read(value, f"{section}.{key}")
 
 
 @app.command()

@@ -28,8 +28,7 @@ def schema(
     """Write the JSON schema of a kind of file, for editors: they check a file whose first line is #:schema FILE."""
     if kind not in KINDS:
         raise InputError(f"there is no kind of file '{kind}'{did_you_mean(kind, KINDS)}")
-    shipped = PACKAGE / SHIPPED / f"{kind}.json"
-    content = shipped.read_text(encoding="utf-8") if shipped.is_file() else made(kind)
+    content = text(kind)
     if out is None:
         print(content, end="")
         return
@@ -37,8 +36,18 @@ def schema(
     print(f"see {out}; begin a {kind} file beside it with: #:schema ./{out.name}")
 
 
+def text(kind: str) -> str:
+    """The schema of a kind of file, one of KINDS.
+
+    Raises:
+        InputError: there is neither a shipped one nor a virtual drive to ask.
+    """
+    shipped = PACKAGE / SHIPPED / f"{kind}.json"
+    return shipped.read_text(encoding="utf-8") if shipped.is_file() else made(kind)
+
+
 def made(kind: str) -> str:
-    """The schema of a kind of file, one of KINDS, by the virtual drive's own entries and parameters.
+    """The same by the virtual drive's own entries and parameters.
 
     Raises:
         InputError: there is no virtual drive to ask.
