@@ -13,6 +13,7 @@ from rich.console import Console
 from stillspin.board.desk import SLICE, TICKS_PER_SECOND, Desk
 from stillspin.board.pacer import LAG, Pacer
 from stillspin.board.show import Show
+from stillspin.drive.state import WORDS
 from stillspin.errors import CampaignError
 
 # ---- pace
@@ -172,7 +173,7 @@ class SlowPacer:
 
 def _shown(desk, pacer, **terminal):
     out = io.StringIO()
-    with Show(Console(file=out, width=160, **terminal), desk, pacer, 1.0) as show:
+    with Show(Console(file=out, width=160, **terminal), desk, pacer, 1.0, WORDS) as show:
         for _ in range(3):
             show.look()
     return out.getvalue()
@@ -181,10 +182,10 @@ def _shown(desk, pacer, **terminal):
 def test_status_line_tells_time_pace_state_shaft_and_port(desk, port):
     with open_port(port.name):
         desk.step(SLICE)
-        line = Show(Console(file=io.StringIO()), desk, SlowPacer(), 1.0).line()
+        line = Show(Console(file=io.StringIO()), desk, SlowPacer(), 1.0, WORDS).line()
     for words in ("0.0 s", "0.42 × real time", "running", "599.5 rpm", "2.00 Nm", "open at 115200 bit/s"):
         assert words in line
-    assert "not open" in Show(Console(file=io.StringIO()), desk, SlowPacer(), 1.0).line()
+    assert "not open" in Show(Console(file=io.StringIO()), desk, SlowPacer(), 1.0, WORDS).line()
     assert "running" in _shown(desk, SlowPacer(), force_terminal=True)
 
 

@@ -22,8 +22,8 @@ from stillspin import core
 from stillspin.board.can_plug import SlcanPlug
 from stillspin.board.desk import SLICE, Desk
 from stillspin.board.pseudo_terminal import PseudoTerminal
+from stillspin.drive.connect import connect
 from stillspin.drive.protocol import Command, Request, StatusCode
-from stillspin.link.address import connect
 from stillspin.link.errors import LinkError
 from stillspin.link.records import ANSWER, Record, to_wire
 from stillspin.link.segments import Joiner, split

@@ -14,7 +14,6 @@ import typer
 from stillspin import cli
 from stillspin.drive import Drive
 from stillspin.exit_codes import ExitCode
-from stillspin.link import address
 from stillspin.link.errors import DifferentError, LinkError, NoAnswerError, RefusedError
 
 BOOK = Path(__file__).resolve().parents[2] / "docs" / "command-line.md"
@@ -131,7 +130,7 @@ def test_a_drive_of_another_protocol_is_4(call, monkeypatch):
         def close(self):
             pass
 
-    monkeypatch.setattr(address, "connect", lambda _where: Other())
+    monkeypatch.setattr("stillspin.drive.drive.connect", lambda _where: Other())
     monkeypatch.setattr("stillspin.drive.inspection.Requester", lambda *_: OtherVersion())
     result = call("monitor", "--drive", NOBODY)
     assert result.exit_code == 4

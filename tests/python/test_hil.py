@@ -16,10 +16,10 @@ from stillspin import core
 from stillspin.cases import profile, scenario_file
 from stillspin.cli import app
 from stillspin.drive import describe
+from stillspin.drive.connect import connect
 from stillspin.drive.protocol import Request
 from stillspin.drive.requester import Requester
 from stillspin.hil import Loop, built, runs, told
-from stillspin.link import address
 from stillspin.link.errors import LinkError, NoAnswerError, RefusedError
 from stillspin.runs import execute
 
@@ -37,7 +37,7 @@ def link(tmp_path_factory):
 @pytest.fixture
 def requester(link):
     """A board that is not in the loop, and is not left in it."""
-    requester = Requester(address.connect(str(link)), timeout=5.0)
+    requester = Requester(connect(str(link)), timeout=5.0)
     yield requester
     with suppress(RefusedError):
         for _ in range(100):  # refused once the reset has come, which swallows what comes with it

@@ -16,6 +16,7 @@ from typer.testing import CliRunner
 from stillspin import cli, core
 from stillspin.cases import profile, scenario_file
 from stillspin.drive import describe
+from stillspin.drive.connect import connect
 from stillspin.drive.own import virtual_ask
 from stillspin.drive.protocol import Request
 from stillspin.drive.requester import Requester
@@ -23,7 +24,6 @@ from stillspin.exit_codes import ExitCode
 from stillspin.hil import Loop, boards, campaign
 from stillspin.hil.runs import LoopRun
 from stillspin.hil.wish import Wish
-from stillspin.link import address
 from stillspin.link.errors import NoAnswerError
 from stillspin.runs import execute
 
@@ -57,7 +57,7 @@ def requests(tmp_path_factory):
     job = execute.prepare(scenario_file.load("A10"), settings, native)[0]
     short = replace(job, run=replace(job.run, duration=0.01))
     with board_process(tmp_path_factory.mktemp("board"), "--speed", "0") as link:
-        requester = Requester(address.connect(link), timeout=5.0)
+        requester = Requester(connect(link), timeout=5.0)
         noting = Noting(requester)
         result = Loop(noting).run(native, lambda *loop: execute.play(loop[0], short, *loop[1:]).reason)
         with suppress(NoAnswerError):

@@ -159,7 +159,7 @@ def test_a_scenario_is_played_back_bit_for_bit(identifier):
     """The firmware on another plant with other noise, whose shaft nobody loads: A12 has its angle from the encoder."""
     native = core.load()
     job = of_scenario(identifier, 0.1)
-    recorded, played = tape.of_run(native, job, None)
+    recorded, played = tape.of_run(native, job, job.image, None)
     assert played.completed
     assert len(recorded.writes) > 10_000
     for given, same in ((recorded, True), (replace(recorded, inputs=[[], [], [], [], []]), identifier == "A10")):

@@ -18,9 +18,9 @@ from typer.testing import CliRunner
 from stillspin import cli, core
 from stillspin.cases import profile, scenario_file
 from stillspin.drive import Drive
+from stillspin.drive.connect import connect
 from stillspin.drive.requester import Requester
 from stillspin.hil import Loop
-from stillspin.link import address
 from stillspin.runs import execute
 
 pytestmark = needs_board
@@ -85,7 +85,7 @@ def test_the_board_is_stepped(interface):
     settings = execute.Settings(chosen, profile.Changes({"solver": {"method": "rk4"}}), 1, "test")
     job = execute.prepare(scenario_file.load("A10"), settings, native)[0]
     short = replace(job, run=replace(job.run, duration=0.01))
-    requester = Requester(address.connect(WHERE), timeout=5.0)
+    requester = Requester(connect(WHERE), timeout=5.0)
     try:
         assert requester.transport.port is None, "every record goes by way of python-can"
         loop = Loop(requester)

@@ -6,7 +6,7 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -46,12 +46,13 @@ class Debugger(Protocol):
 class Options:
     """How to run the board.
 
-    `speed`: times real time, 0 as fast as possible. `load`: Nm. `socketcan`: an interface of the
-    kernel in place of the SLCAN adapter. `end`: simulated seconds after which it stops. `eeprom`: the file
-    that keeps the content of the EEPROM; a new memory without. `parent`: a process without which it stops.
+    `states`: of the drive, in words. `speed`: times real time, 0 as fast as possible. `load`: Nm. `socketcan`: an
+    interface of the kernel in place of the SLCAN adapter. `end`: simulated seconds after which it stops. `eeprom`: the
+    file that keeps the content of the EEPROM; a new memory without. `parent`: a process without which it stops.
     `remarks`: says of the board when it is switched off what a user has to know of the run.
     """
 
+    states: Mapping[int, str]
     speed: float = 1.0
     link: Path | None = None
     can_link: Path | None = None
@@ -87,7 +88,7 @@ def serve(board: NativeBoard, options: Options, title: str) -> None:
     try:
         _say_how_to_connect(desk, title)
         pacer = Pacer(options.speed)
-        with stopped_by_signals() as stop, Show(Console(stderr=True), desk, pacer, options.speed) as show:
+        with stopped_by_signals() as stop, _show(desk, pacer, options) as show:
             began = time.monotonic()
             stop.parent = options.parent
             _loop(desk, pacer, show, stop, options)
@@ -104,6 +105,10 @@ def serve(board: NativeBoard, options: Options, title: str) -> None:
         desk.close()
     left = f"switched off after {ran:.1f} s of the drive's time, {ran / wall:.2f} × real time"
     _take_leave("\n".join((*remarks, left)), show)
+
+
+def _show(desk: Desk, pacer: Pacer, options: Options) -> Show:
+    return Show(Console(stderr=True), desk, pacer, options.speed, options.states)
 
 
 def _take_leave(words: str, show: Show) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import queue
 import threading
 import time
+from collections.abc import Mapping
 from types import TracebackType
 from typing import Self
 
@@ -15,23 +16,11 @@ from rich.text import Text
 from stillspin.board.desk import Desk
 from stillspin.board.pacer import Pacer
 from stillspin.counted import counted
-from stillspin.drive import state
 
 _EVERY = 0.25  # s between two looks of the status line
 _AGAIN = 30.0  # s after which a warning is repeated
 _WAITING = 8  # texts that wait for the terminal; what comes on top of them is not shown
 _LAST = 1.0  # s that the last words may take at the end
-
-_STATES = {
-    state.BOOT: "boot",
-    state.CALIBRATE: "calibrating",
-    state.READY: "ready",
-    state.START: "starting",
-    state.RUN: "running",
-    state.STOP: "stopping",
-    state.FAULT: "FAULT",
-    state.COMMISSION: "commissioning",
-}
 
 
 class Show:
@@ -41,8 +30,9 @@ class Show:
     the drive's time.
     """
 
-    def __init__(self, console: Console, desk: Desk, pacer: Pacer, speed: float) -> None:
+    def __init__(self, console: Console, desk: Desk, pacer: Pacer, speed: float, states: Mapping[int, str]) -> None:
         self._console = console
+        self._states = states
         self._desk = desk
         self._pacer = pacer
         self._speed = speed
@@ -111,7 +101,7 @@ class Show:
         """Time, speed, state of the drive, shaft, port."""
         desk = self._desk
         signals, truth = desk.board.signals(), desk.board.truth()
-        words = _STATES.get(int(signals["state"]), "?") if signals else "executes"
+        words = self._states.get(int(signals["state"]), "?") if signals else "executes"
         port = f"open at {desk.port.rate} bit/s" if desk.port.is_open else "not open"
         return (
             f"{desk.time:9.1f} s  {self._ratio()}  {words}  shaft {truth['speed']:7.1f} rpm, load "

@@ -12,6 +12,7 @@ import typer
 from stillspin import core, resources
 from stillspin.board import power, serve
 from stillspin.cases import profile, variant
+from stillspin.drive import state
 from stillspin.errors import InputError
 from stillspin.image import opened
 from stillspin.image.gdb import Remote
@@ -129,7 +130,7 @@ def board(
     remarks = partial(opened.warnings, image=program) if program else None
     placed = partial(opened.placed, image=program) if program else None
     options = serve.Options(
-        speed, serial_link, can_link, socketcan, load, end, eeprom, parent, debugger, remarks, placed
+        state.WORDS, speed, serial_link, can_link, socketcan, load, end, eeprom, parent, debugger, remarks, placed
     )
     try:
         serve.serve(powered, options, title)

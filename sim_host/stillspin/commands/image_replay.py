@@ -79,7 +79,9 @@ def _job(identifier: str, only: str | None, image: Image | None, where: tuple[st
 
 def _of_scenario(job: Job) -> Tape:
     with PhaseBar(Console(stderr=True)) as bar:
-        tape, played = tapes.of_run(core.load(), job, partial(bar.show, phase=f"{job.scenario} {job.run.name}"))
+        tape, played = tapes.of_run(
+            core.load(), job, job.image, partial(bar.show, phase=f"{job.scenario} {job.run.name}")
+        )
     for words in played.notes:
         print(words)
     if tape is None or not played.completed:

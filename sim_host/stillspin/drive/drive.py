@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 from stillspin.drive.acquisition import Acquisition
 from stillspin.drive.commissioning import OnProgress, Report, follow
+from stillspin.drive.connect import connect
 from stillspin.drive.protocol import Command
-from stillspin.link import address
 
 
 class Drive(Acquisition):
@@ -21,7 +21,7 @@ class Drive(Acquisition):
             InputError: no address.
             DriveError: nothing can be opened there, or nothing answers.
         """
-        return cls(address.connect(where), timeout=timeout, progress=progress)
+        return cls(connect(where), timeout=timeout, progress=progress)
 
     @classmethod
     def virtual(
@@ -35,7 +35,7 @@ class Drive(Acquisition):
             speed: multiple of real time; 0 is as fast as possible.
             seed: of the noise.
         """
-        from stillspin.link.virtual import VirtualTransport  # noqa: PLC0415 - takes long to load, and not all need it
+        from stillspin.board.virtual_transport import VirtualTransport  # noqa: PLC0415 - takes long to load
 
         return cls(VirtualTransport(profile, changes, speed=speed, seed=seed), timeout=2.0)
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from stillspin.board.virtual_transport import VirtualTransport
 from stillspin.drive import describe
 from stillspin.drive.describe import Ask
 from stillspin.drive.protocol import Request
 from stillspin.drive.requester import Requester
-from stillspin.link.virtual import VirtualTransport
 
 
 @contextmanager

@@ -14,7 +14,17 @@ STATUS_FORM = "<IBBHiiBBBBHBBB"
 FAULT_FORM = "<HIBBiiiiB"
 
 BOOT, CALIBRATE, READY, START, RUN, STOP, FAULT, COMMISSION = range(8)
-"""States of the drive, firmware/mode/states.h."""
+"""States of the drive, firmware/interfaces/state.h."""
+WORDS = {
+    BOOT: "boot",
+    CALIBRATE: "calibrating",
+    READY: "ready",
+    START: "starting",
+    RUN: "running",
+    STOP: "stopping",
+    FAULT: "FAULT",
+    COMMISSION: "commissioning",
+}
 ENERGISED = frozenset({START, RUN, STOP, COMMISSION})
 COMMISSIONING_RUNNING = 1
 _UNSAVED_UNKNOWN = 255

@@ -6,13 +6,13 @@ from collections.abc import Iterator, Mapping
 from typing import TypeVar
 
 from stillspin.drive import describe
+from stillspin.drive.connect import connect
 from stillspin.drive.describe import Ask, Identity
 from stillspin.drive.own import virtual_ask
 from stillspin.drive.requester import Requester
 from stillspin.drive.table import Parameter, Signal, Table
 from stillspin.hil.kept_board import TIMEOUT
 from stillspin.hil.tape import Heading
-from stillspin.link import address
 from stillspin.link.errors import DifferentError
 
 _SHOWN = 8
@@ -26,7 +26,7 @@ def edition_at(where: str) -> str:
         InputError: no address.
         DriveError: nothing can be opened there, or nothing answers.
     """
-    requester = Requester(address.connect(where), TIMEOUT)
+    requester = Requester(connect(where), TIMEOUT)
     try:
         return describe.identity(lambda kind, body: requester.request(kind, body, repeat=True)).edition
     finally:

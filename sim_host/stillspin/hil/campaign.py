@@ -11,6 +11,7 @@ from pathlib import Path
 
 from stillspin import core
 from stillspin.core import Progress
+from stillspin.drive.connect import connect
 from stillspin.drive.describe import Identity
 from stillspin.drive.requester import Requester
 from stillspin.errors import InputError
@@ -126,7 +127,7 @@ def _step_through(loop: Loop, run: LoopRun, row: Row, native: core.NativeCore, p
 @contextmanager
 def _loop(where: str, note: Note | None = None) -> Iterator[Loop]:
     """A board in the loop, which is let go at the end."""
-    requester = Requester(address.connect(where), TIMEOUT)
+    requester = Requester(connect(where), TIMEOUT)
     try:
         loop = Loop(requester, note)
         try:

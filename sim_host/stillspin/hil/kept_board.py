@@ -8,10 +8,10 @@ from contextlib import ExitStack, contextmanager
 from multiprocessing.util import Finalize
 
 from stillspin.drive import describe
+from stillspin.drive.connect import connect
 from stillspin.drive.requester import Requester
 from stillspin.hil.boards import Board
 from stillspin.hil.loop import Loop
-from stillspin.link import address
 
 TIMEOUT = 1.0  # s; a step of a slow bus takes tens of milliseconds
 _IDLE = 10.0  # s; a board runs as fast as it can, and takes a processor for that
@@ -24,7 +24,7 @@ class KeptBoard:
         self.kind, self.good = kind, True
         with ExitStack() as held:
             board = held.enter_context(Board(memory))
-            requester = Requester(address.connect(board.wait(kind)), TIMEOUT)
+            requester = Requester(connect(board.wait(kind)), TIMEOUT)
             held.callback(requester.close)
             self.loop = Loop(requester)
             self.firmware = describe.identity(self.loop.ask).text

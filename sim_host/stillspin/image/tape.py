@@ -21,8 +21,9 @@ from stillspin.core_board import NativeBoard
 from stillspin.core_code import Change
 from stillspin.errors import InputError
 from stillspin.image import closed_loop, opened
+from stillspin.image.closed_loop import Wanted
+from stillspin.image.opened import Image
 from stillspin.image.run_record import Played
-from stillspin.runs.execute import Job
 
 _FORMAT = 2
 _MODULES = range(0x6800, 0x6980)
@@ -100,16 +101,18 @@ def play(board: NativeBoard, seconds: float, octets: Sequence[Octets], given: Ta
     return Tape(seconds, samples, [write[:3] for write in writes], list(octets), "", inputs)
 
 
-def of_run(native: NativeCore, job: Job, progress: Progress | None) -> tuple[Tape | None, Played]:
+def of_run(
+    native: NativeCore, job: Wanted, image: Image | None, progress: Progress | None
+) -> tuple[Tape | None, Played]:
     """Let a board run a scenario, told over its serial port, and record it from power-on; no tape where it never began.
 
     Args:
         native: the native module.
-        job: of an image, or of the firmware where it has none.
+        job: what is run.
+        image: what drives the plant; the firmware where there is none.
         progress: gets the share done (0 … 1); false breaks the run off.
     """
     made: list[tuple[float, list[int], list[tuple[int, int, int, int]], list[list[Change]]]] = []
-    image = job.image
     if image:
         board = opened.power_plant(native, image, job.plant, job.seed)
     else:

@@ -1,4 +1,4 @@
-"""Addresses of drives, and the transport that each stands for.
+"""Addresses of drives, taken apart.
 
 serial:///dev/ttyUSB0?baud=115200     a serial port; /dev/ttyUSB0 and COM3 alone mean the same
 can:slcan:/dev/ttyACM0?node=1         an SLCAN adapter; bitrate=500000
@@ -13,8 +13,7 @@ from urllib.parse import parse_qsl, urlsplit
 
 from stillspin.errors import InputError, did_you_mean
 from stillspin.link.segments import DEFAULT_BITRATE, NODES
-from stillspin.link.serial_port import DEFAULT_BAUD, SerialTransport
-from stillspin.link.transport import Transport
+from stillspin.link.serial_port import DEFAULT_BAUD
 from stillspin.quantity import Range
 
 _FORMS = "serial:///dev/ttyUSB0, can:slcan:/dev/ttyACM0?node=1, can:socketcan:can0?node=1 or virtual:"
@@ -56,25 +55,6 @@ def parse(text: str) -> Address:
     if scheme == "virtual":
         return Address("virtual", body.removeprefix("virtual:") or "bench", options=_options(text, query, {"speed": 1}))
     return _bad(text)
-
-
-def connect(text: str) -> Transport:
-    """The transport that an address stands for, opened.
-
-    Raises:
-        InputError: it is no address.
-        LinkError: what it names cannot be opened.
-    """
-    address = parse(text)
-    if address.kind == "serial":
-        return SerialTransport(address.channel, address.options["baud"])
-    if address.kind == "virtual":
-        from stillspin.link.virtual import VirtualTransport  # noqa: PLC0415 - takes long to load, and not all need it
-
-        return VirtualTransport(address.channel, speed=address.options["speed"])
-    from stillspin.link.can_bus import CanTransport  # noqa: PLC0415 - the same
-
-    return CanTransport(address.interface, address.channel, address.options["node"], address.options["bitrate"])
 
 
 def _options(text: str, query: str, known: dict[str, int]) -> dict[str, int]:
