@@ -146,3 +146,16 @@ def test_a_watched_word_takes_no_time(tmp_path):
                 stopped += board.halted and board.registers()["PC"] == image.names.addresses["sample"]
             found.append(board.code()["cycles"])
     assert found[0] == found[1]
+
+
+def test_what_is_repeated_stands_beside_its_rpt(tmp_path):
+    source = tmp_path / "copies.asm"
+    source.write_text(
+        " .org 0x8000\nstart: MOVL XAR6,#0x9000\n MOVL XAR7,#0x3F8000\n RPT #15\n || PREAD *XAR6++,*XAR7\n"
+        " RPT @AR6\n || NOP\nstay: SB stay,UNC\n"
+    )
+    image = tmp_path / "copies.out"
+    assert stillspin("image", "assemble", source, "--out", image).exit_code == 0
+    done = stillspin("image", "trace", image, "--from", "start", "--instructions", "5")
+    texts = [line[22:56].strip() for line in done.stdout.splitlines() if "  0x" in line]
+    assert texts[2:4] == ["RPT #0xf || PREAD *XAR6++,*XAR7", "RPT @AR6 || NOP"]

@@ -12,6 +12,8 @@ from stillspin.image import runaway
 
 _SPOKEN_OF = frozenset({"PC"})
 """Registers that every instruction changes."""
+_WORDS = 3
+"""Of an instruction and what it repeats."""
 
 
 def lines(board: NativeBoard, names: Names) -> Iterator[str]:
@@ -23,12 +25,12 @@ def lines(board: NativeBoard, names: Names) -> Iterator[str]:
     place = ""
     for (cycles, before), (following, after) in pairwise(rows):
         address = before["PC"]
-        words = board.words(address, 2)
+        words = board.words(address, _WORDS)
         here = where(names, address)
         if here != place:
             place = here
             yield f"{place}:"
-        text = disassemble(words, address).text
+        text = _text(words, address)
         if runaway.is_illegal(words):
             yield f"{cycles:>12}  0x{address:06X}  {text:<34}      is illegal and traps: the trace ends"
             return
@@ -36,6 +38,14 @@ def lines(board: NativeBoard, names: Names) -> Iterator[str]:
             f"{name} {value:X}" for name, value in after.items() if name not in _SPOKEN_OF and value != before[name]
         )
         yield f"{cycles:>12}  0x{address:06X}  {text:<34} {following - cycles:>3}  {changed}".rstrip()
+
+
+def _text(words: list[int], address: int) -> str:
+    """The instruction at the first of these words; with what it repeats, if it is RPT: the two are executed as one."""
+    line = disassemble(words, address)
+    if not line.text.startswith("RPT "):
+        return line.text
+    return f"{line.text} || {disassemble(words[line.words :], address + line.words).text}"
 
 
 def where(names: Names, address: int) -> str:
