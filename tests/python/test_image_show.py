@@ -193,6 +193,18 @@ def test_tables_in_the_boot_rom_are_said_to_read_as_0(tmp_path):
     assert done.stdout.splitlines()[-1].startswith("sect0: tables of the boot ROM, which the virtual chip has not")
 
 
+def test_what_is_loaded_into_the_boot_rom_is_told_what_its_section_lacks(tmp_path):
+    """The reset vector of TI's run-time, where the linker command file forgets that it is there already."""
+    status, lines, _ = show(tmp_path, [Block(0x3F7FF6, (0x6F00,)), Block(0x3FFFC0, (0x4000, 0x003F))])
+    assert status == 1
+    assert lines[-1].startswith("sect1 is loaded into the boot ROM, which has its own words; ")
+    assert "TYPE = DSECT (the reset vector)" in lines[-1]
+    done = CliRunner().invoke(cli.app, ["image", "time", str(tmp_path / "some.out")])
+    assert done.exit_code == 2
+    assert "0x3FFFC0 to 0x3FFFC1 is in the boot ROM" in done.stderr
+    assert "TYPE = DSECT (the reset vector)" in done.stderr
+
+
 def test_a_block_over_a_border_counts_in_both(tmp_path):
     _, lines, _ = show(tmp_path, [Block(0x3EBFFF, (1, 2, 3))])
     assert lines[3].endswith("0x3EBFFF   0x3EBFFF  sector D to sector C")

@@ -11,6 +11,9 @@ from stillspin.flash import layout, memories
 from stillspin.flash.files import read_program
 from stillspin.flash.program import Block, Program
 
+IN_ROM = "in the linker command file it has to be TYPE = DSECT (the reset vector) or TYPE = NOLOAD (IQmathTables)"
+"""What to do about a section that is loaded into the boot ROM."""
+
 _LONG_BRANCH = 0x0040
 """The first word of LB, with the upper six bits of where it goes."""
 
@@ -29,6 +32,11 @@ def _check_place(block: Block, name: str) -> None:
     taken = sum(filled.of(memory) for memory in memories.MEMORIES if memory.group)
     if taken < len(block.words):
         lost = counted(len(block.words) - taken, "word")
+        if block.address in layout.BOOT_ROM:
+            raise InputError(
+                f"{name}: 0x{block.address:06X} to 0x{block.end - 1:06X} is in the boot ROM, which has its own words; "
+                f"{IN_ROM}"
+            )
         raise InputError(
             f"{name}: of 0x{block.address:06X} to 0x{block.end - 1:06X} {lost} lie in neither flash nor RAM "
             "(the OTP of the virtual one is erased and stays so); `stillspin image show` lists where its sections go"

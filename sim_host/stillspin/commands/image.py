@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from stillspin.board import image as on_board
 from stillspin.c28x.disassembler import disassemble
 from stillspin.commands import image_assemble, image_inject, image_replay, image_time, image_trace
 from stillspin.counted import counted
@@ -34,7 +35,7 @@ app.command(name="record")(image_replay.record)
 app.command(name="replay")(image_replay.replay)
 app.command(name="assemble")(image_assemble.assemble)
 
-IN_ROM = "boot ROM"
+ROM = "boot ROM"
 
 
 def _memory(section: Section) -> str:
@@ -60,7 +61,11 @@ def _say(there: Sequence[Section]) -> int:
         print(f"{one} and {other} share 0x{first:06X} to 0x{end - 1:06X}: an overlay, or a mistake of the command file")
     if filled.outside:
         print(f"{counted(filled.outside, 'word')} in no memory of the chip")
-    in_rom = [section.name for section in there if memories.name(section.run) == IN_ROM]
+    of_rom = [section for section in there if memories.name(section.run) == ROM]
+    in_rom = [section.name for section in of_rom if section.load is None]
+    for section in of_rom:
+        if section.load is not None:
+            print(f"{section.name} is loaded into the boot ROM, which has its own words; {on_board.IN_ROM}")
     if in_rom:
         print(
             f"{', '.join(in_rom)}: tables of the boot ROM, which the virtual chip has not: they read as 0 unless "
