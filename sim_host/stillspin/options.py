@@ -85,6 +85,15 @@ AfterOption = Annotated[
         help="Let the image run for this long from power-on first.",
     ),
 ]
+WithinOption = Annotated[
+    float,
+    typer.Option(
+        "--within",
+        parser=number("--within", 1e-6, unit="s"),
+        metavar="SECONDS",
+        help="Give up when a place is not reached within this time.",
+    ),
+]
 ProfileOption = Annotated[
     str, typer.Option("--profile", "-p", help="The plant: a name from `stillspin list`, or a TOML file.")
 ]
@@ -112,13 +121,10 @@ ChangeOption = Annotated[
         help="Change an entry of the plant (section.entry=value) or a firmware parameter (name=value). Repeatable.",
     ),
 ]
-
-
 ParamsOption = Annotated[
     Path | None,
     typer.Option("--params", metavar="FILE", help="Firmware parameters, such as `commission` writes them."),
 ]
-
 SchemeOption = Annotated[
     str | None,
     typer.Option(
@@ -127,8 +133,6 @@ SchemeOption = Annotated[
         help="Another scheme than the drive's own, such as paper: a set of firmware parameters, or a TOML file of one.",
     ),
 ]
-
-
 CommissionOption = Annotated[
     bool,
     typer.Option(
@@ -136,8 +140,19 @@ CommissionOption = Annotated[
         help="Let the drive measure machine and inverter first where the profile differs from the nameplate.",
     ),
 ]
-
-
+DurationOption = Annotated[
+    float,
+    typer.Option(
+        "--duration",
+        parser=number("--duration", 0, unit="s"),
+        metavar="S",
+        help="End after so many seconds; 0: with Ctrl-C.",
+    ),
+]
+SerialLinkOption = Annotated[
+    Path | None,
+    typer.Option("--serial-link", metavar="PATH", help="Symbolic link to the port: a name that stays the same."),
+]
 PaceOption = Annotated[
     float,
     typer.Option(
@@ -157,8 +172,6 @@ JobsOption = Annotated[
         help="Runs at a time [default: one per processor].",
     ),
 ]
-
-
 ClusterOption = Annotated[
     str,
     typer.Option(

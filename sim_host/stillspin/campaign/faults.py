@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from stillspin import core, json_schema, resources, toml_table
-from stillspin.campaign.tables import NAME, NUMBER, TEXT, pair, rows, table, unique
+from stillspin import core
+from stillspin.campaign.tables import NAME, NUMBER, TEXT, pair, read, rows, table, unique
 from stillspin.entry import Entry, Value
 from stillspin.errors import InputError
 from stillspin.json_schema import DIALECT, Json
@@ -62,9 +62,7 @@ def load(name_or_path: str, entries: core.Schema) -> Faults:
     Raises:
         InputError: there are none, or the file is wrong.
     """
-    path = resources.find("faults", name_or_path)
-    data = toml_table.read(path).items()
-    json_schema.check(data, schema(entries), str(path))
+    path, data = read("faults", name_or_path, schema(entries))
     first, last = map(float, data.get("window", (0.1, 0.9)))
     if not 0.0 <= first < last <= 1.0:
         raise InputError(f"{path}: window = {data['window']}: must be shares of the run, [from, to], 0 ≤ from < to ≤ 1")

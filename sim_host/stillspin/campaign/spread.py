@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from stillspin import core, json_schema, resources, toml_table
-from stillspin.campaign.tables import NAME, NUMBER, TEXT, pair, rows, table, unique
+from stillspin import core
+from stillspin.campaign.tables import NAME, NUMBER, TEXT, pair, read, rows, table, unique
 from stillspin.entry import Entry
 from stillspin.errors import InputError
 from stillspin.json_schema import DIALECT, Json
@@ -89,9 +89,7 @@ def load(name_or_path: str, entries: core.Schema) -> Spread:
     Raises:
         InputError: there is none, or its file is wrong.
     """
-    path = resources.find("spreads", name_or_path)
-    data = toml_table.read(path).items()
-    json_schema.check(data, schema(entries), str(path))
+    path, data = read("spreads", name_or_path, schema(entries))
     found = [_departure(row, f"{path}: departures[{n}]") for n, row in enumerate(data["departures"])]
     unique([row.name for row in found], f"{path}: departures")
     return Spread(path.stem, data.get("description", "").strip(), tuple(found))

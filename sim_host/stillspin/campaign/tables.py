@@ -1,15 +1,29 @@
-"""What the schemas of spread and fault files are made of."""
+"""Spread and fault files: how they are read, and what their schemas are made of."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
+from stillspin import json_schema, resources, toml_table
 from stillspin.errors import InputError
 from stillspin.json_schema import Json
 
 TEXT: Json = {"type": "string"}
 NUMBER: Json = {"type": "number"}
 NAME: Json = {"type": "string", "pattern": "^[a-z0-9_]+$", "words": "lower case letters, digits and '_'"}
+
+
+def read(folder: str, name_or_path: str, schema: Json) -> tuple[Path, Json]:
+    """What ships under a name, or is in a file, held against its schema.
+
+    Raises:
+        InputError: there is none, or the file is wrong.
+    """
+    path = resources.find(folder, name_or_path)
+    data = toml_table.read(path).items()
+    json_schema.check(data, schema, str(path))
+    return path, data
 
 
 def table(keys: Mapping[str, Json], *required: str) -> Json:

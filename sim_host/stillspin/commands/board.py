@@ -26,6 +26,7 @@ from stillspin.options import (
     RomOption,
     SchemeOption,
     SeedOption,
+    SerialLinkOption,
     number,
     whole,
 )
@@ -41,10 +42,7 @@ def board(
     params: ParamsOption = None,
     scheme: SchemeOption = None,
     speed: PaceOption = 1.0,
-    serial_link: Annotated[
-        Path | None,
-        typer.Option("--serial-link", metavar="PATH", help="Symbolic link to the port: a name that stays the same."),
-    ] = None,
+    serial_link: SerialLinkOption = None,
     can_link: Annotated[
         Path | None,
         typer.Option(

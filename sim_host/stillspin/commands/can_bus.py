@@ -21,7 +21,7 @@ from stillspin.errors import InputError
 from stillspin.link import address
 from stillspin.link.can_bus import open_bus
 from stillspin.link.segments import NODES
-from stillspin.options import number
+from stillspin.options import DurationOption
 
 _DBC = Path(__file__).resolve().parent.parent / "can" / "stillspin.dbc"
 _NODE_MASK = 0x7F
@@ -41,15 +41,7 @@ def bus(
         ),
     ],
     dbc: Annotated[Path, typer.Option("--dbc", help="DBC file that describes the messages.")] = _DBC,
-    duration: Annotated[
-        float,
-        typer.Option(
-            "--duration",
-            parser=number("--duration", 0, unit="s"),
-            metavar="S",
-            help="End after so many seconds; 0: with Ctrl-C.",
-        ),
-    ] = 0.0,
+    duration: DurationOption = 0.0,
     changes: Annotated[bool, typer.Option("--changes", help="Only messages whose content has changed.")] = False,
     export: Annotated[
         Path | None,

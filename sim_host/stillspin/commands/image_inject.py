@@ -21,7 +21,7 @@ from stillspin.options import (
     ProfileOption,
     RomOption,
     SeedOption,
-    number,
+    WithinOption,
     whole,
 )
 
@@ -93,15 +93,7 @@ def inject(
         ),
     ] = None,
     after: AfterOption = 0.0,
-    within: Annotated[
-        float,
-        typer.Option(
-            "--within",
-            parser=number("--within", 1e-6, unit="s"),
-            metavar="SECONDS",
-            help="Give up when the stretch has not begun, or not ended, within this time.",
-        ),
-    ] = 0.1,
+    within: WithinOption = 0.1,
     most: Annotated[
         int,
         typer.Option(

@@ -17,7 +17,7 @@ from stillspin.options import (
     ProfileOption,
     RomOption,
     SeedOption,
-    number,
+    WithinOption,
     whole,
 )
 
@@ -40,15 +40,7 @@ def trace(
     ] = 40,
     after: AfterOption = 0.0,
     rom: RomOption = None,
-    within: Annotated[
-        float,
-        typer.Option(
-            "--within",
-            parser=number("--within", 1e-6, unit="s"),
-            metavar="SECONDS",
-            help="Give up when a place is not reached within this time.",
-        ),
-    ] = 0.1,
+    within: WithinOption = 0.1,
     profile_name: ProfileOption = "bench",
     motor: MotorOption = resources.DEFAULT_MOTOR,
     seed: SeedOption = 1,

@@ -10,7 +10,7 @@ import typer
 from stillspin.board import loader as virtual
 from stillspin.commands.flash import kernel_beside
 from stillspin.flash.files import kernel_program
-from stillspin.options import PaceOption
+from stillspin.options import PaceOption, SerialLinkOption
 
 
 def loader(
@@ -22,10 +22,7 @@ def loader(
         Path | None,
         typer.Option("--kernel", metavar="FILE", help="The flash kernel to expect [default: the one beside FLASH]."),
     ] = None,
-    link: Annotated[
-        Path | None,
-        typer.Option("--serial-link", metavar="PATH", help="Symbolic link to the port: a name that stays the same."),
-    ] = None,
+    link: SerialLinkOption = None,
     speed: PaceOption = 1.0,
 ) -> None:
     """Run a virtual board in serial boot, to try `stillspin flash`; Ctrl-C switches it off.

@@ -19,8 +19,7 @@ from stillspin.commands import braille
 from stillspin.commands.connection import DriveOption, opened
 from stillspin.counted import counted
 from stillspin.drive import Drive, Sample, Status, Stream
-from stillspin.errors import InputError
-from stillspin.options import number
+from stillspin.options import DurationOption, number
 
 _DEFAULT = ["speed", "speed_reference", "current_d", "current_q"]
 _COLOURS = ["cyan", "dark_orange", "green", "magenta", "blue", "yellow", "red", "white"]
@@ -42,19 +41,9 @@ def monitor(
             "--period", parser=number("--period", 0, unit="ms"), metavar="MS", help="Milliseconds between samples."
         ),
     ] = 20.0,
-    duration: Annotated[
-        float,
-        typer.Option(
-            "--duration",
-            parser=number("--duration", 0, unit="s"),
-            metavar="S",
-            help="End after so many seconds; 0: with Ctrl-C.",
-        ),
-    ] = 0.0,
+    duration: DurationOption = 0.0,
 ) -> None:
     """Show signals live, until Ctrl-C."""
-    if duration < 0:
-        raise InputError(f"--duration {duration:g}: must be 0 or more")
     screen = Console()
     with opened(where) as drive, drive.stream(signals or _DEFAULT, period / 1e3) as stream:
         end = time.monotonic() + duration if duration else math.inf  # the drive's table may have taken its time

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from stillspin.errors import InputError
 from stillspin.flash import layout
 from stillspin.flash.octets import readable
-from stillspin.flash.program import Block, Program, assemble
+from stillspin.flash.program import Block, Program, assemble, complete
 
 KIND = "COFF"
 MAGIC = b"\xc2\x00"
@@ -47,10 +47,8 @@ def read(data: bytes, name: str) -> Program:
     Raises:
         InputError: it is damaged, of another chip, or no executable.
     """
-    try:
+    with complete(KIND, name):
         return _read(data, name)
-    except struct.error:
-        raise InputError(f"{name}: the COFF file is cut short; copy it again") from None
 
 
 def _read(data: bytes, name: str) -> Program:

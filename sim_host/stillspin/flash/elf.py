@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from stillspin.errors import InputError
 from stillspin.flash.octets import readable
-from stillspin.flash.program import Block, Program, assemble
+from stillspin.flash.program import Block, Program, assemble, complete
 
 KIND = "ELF"
 MAGIC = b"\x7fELF"
@@ -67,10 +67,8 @@ def read(data: bytes, name: str) -> Program:
     Raises:
         InputError: it is damaged, of another chip, or no executable.
     """
-    try:
+    with complete(KIND, name):
         return _read(data, name)
-    except struct.error:
-        raise InputError(f"{name}: the ELF file is cut short; copy it again") from None
 
 
 def _read(data: bytes, name: str) -> Program:

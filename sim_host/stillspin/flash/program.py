@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import struct
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from stillspin.errors import InputError
@@ -74,3 +76,16 @@ def _twice(address: int, parts: Iterable[Part]) -> str:
         f"its sections {' and '.join(there)} are loaded to the same place, 0x{address:06X}: the linker command file "
         "has to give each its own"
     )
+
+
+@contextmanager
+def complete(kind: str, name: str) -> Iterator[None]:
+    """While a file of a kind is taken apart, which may end too early.
+
+    Raises:
+        InputError: it did.
+    """
+    try:
+        yield
+    except struct.error:
+        raise InputError(f"{name}: the {kind} file is cut short; copy it again") from None
