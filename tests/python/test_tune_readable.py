@@ -87,6 +87,24 @@ def test_every_axis_says_its_unit(tuned, server):
     assert {"A", "ms"} <= set(drawn(tuned, "current_d, current_q over time"))
 
 
+def test_under_the_pointer_a_state_is_a_word(tuned, server):
+    """In a plot, and in a capture."""
+    server.bench.plot(["state"])
+    tuned.wait_for_selector("[data-value=state]:has-text('ready')")
+    tuned.hover("#plots canvas")
+    assert wait_until(lambda: "state ready" in drawn(tuned, "state over time"), 10)
+    tuned.click("[data-tab=scope]")
+    for channel, name in enumerate(("state", "speed", "", "")):
+        tuned.select_option(f"[data-channel='{channel}']", name)
+    tuned.evaluate("window.drawn.clear()")
+    tuned.click("#capture")
+    canvas = tuned.locator("#captured canvas").first
+    box = canvas.bounding_box()
+    for x in range(round(box["width"] / 4), round(box["width"] / 3)):  # the small drive's ramp is at its state there
+        tuned.mouse.move(box["x"] + x, box["y"] + 50)
+    assert wait_until(lambda: "state ready" in drawn(tuned, "state over time"), 10)
+
+
 def drawn(page, label):
     return page.evaluate("(label) => [...(window.drawn.get(label) ?? [])]", label)
 

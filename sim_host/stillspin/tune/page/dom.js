@@ -43,10 +43,15 @@ export function quantity(value, unit) {
 
 export const withUnit = (text, unit) => (unit ? `${text} ${unit}` : text);
 
-/** A signal's value for people: in words where it stands for a state, with its unit otherwise. */
-export function told(value, { name, unit }, words = {}) {
-  if (value === null) return "–"; // not known
+/** What a signal's value stands for, in words; undefined where it is a quantity. */
+export function meant(value, name, words = {}) {
   const list = words[name];
   if (name === "limit" && list) return list.filter((_, bit) => (value >> bit) & 1).join(", ") || "nothing";
-  return list?.[value] ?? quantity(value, unit);
+  return list?.[value];
+}
+
+/** A signal's value for people. */
+export function told(value, { name, unit }, words) {
+  if (value === null) return "–"; // not known
+  return meant(value, name, words) ?? quantity(value, unit);
 }

@@ -95,7 +95,7 @@ export class Live {
     const x = this.time.slice(first).map((time) => time - now);
     for (const panel of this.panels) {
       const series = panel.members.map(({ name, at, colour }) => ({ name, colour, x, y: this.values[at].slice(first) }));
-      panel.plot.show({ from, to: 0, series, unit: panel.unit, timeUnit: "s" });
+      panel.plot.show({ from, to: 0, series, unit: panel.unit, timeUnit: "s", words: this.words });
       panel.members.forEach((signal, place) => {
         panel.values[place].textContent = told(this.values[signal.at][last], signal, this.words);
       });

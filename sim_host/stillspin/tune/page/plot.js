@@ -1,5 +1,7 @@
 // Lines over time on a canvas: axes with round numbers, a reading under the pointer, a mark at zero.
 
+import { meant } from "./dom.js";
+
 const MARGIN = { left: 62, right: 26, top: 20, bottom: 22 };
 
 /** Up to `count` round numbers in low … high. */
@@ -23,7 +25,7 @@ export function padded(low, high) {
 const short = (value) => value === null ? "–" : String(Number(value.toPrecision(6))).replace("-", "−");
 
 export class Plot {
-  /** series: [{name, x, y, colour}] with colour a CSS variable's name. */
+  /** content.series: [{name, x, y, colour}] with colour a CSS variable's name; content.words: see meant(). */
   constructor(canvas) {
     this.canvas = canvas;
     this.pointer = null;
@@ -151,7 +153,9 @@ export class Plot {
       const at = nearest(line.x, time);
       if (at < 0) continue;
       pen.fillStyle = this.colour("--ink");
-      pen.fillText(`${line.name} ${short(line.y[at])} ${content.unit}`, this.pointer + (part > 0.6 ? -8 : 8), row);
+      const value = line.y[at];
+      const reading = (value !== null && meant(value, line.name, content.words)) || `${short(value)} ${content.unit}`;
+      pen.fillText(`${line.name} ${reading}`, this.pointer + (part > 0.6 ? -8 : 8), row);
       row += 14;
     }
   }

@@ -28,8 +28,9 @@ export class Scope {
     by("download").onclick = () => this.download();
   }
 
-  build({ signals, edges, depth }) {
+  build({ signals, edges, depth, words }) {
     this.depth = depth;
+    this.words = words;
     this.signals = signals;
     const names = signals.map((signal) => signal.name);
     const options = (list, chosen) => list.map((name) => make("option", { value: name, selected: name === chosen }, name || "–"));
@@ -114,7 +115,7 @@ export class Scope {
     const built = panels(by("captured"), list, make);
     for (const panel of built) {
       const series = panel.members.map(({ name, colour }) => ({ name, colour, x, y: signals[name] }));
-      panel.plot.show({ from: x[0], to: x[x.length - 1], mark: 0, series, unit: panel.unit, timeUnit: "ms" });
+      panel.plot.show({ from: x[0], to: x[x.length - 1], mark: 0, series, unit: panel.unit, timeUnit: "ms", words: this.words });
     }
     by("captured").append(make("p", { class: "hint" }, "Time in ms from the trigger."));
   }
