@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import bisect
 import struct
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import zip_longest
 from pathlib import Path
 
@@ -31,13 +33,17 @@ class Names:
     damage: Sequence[str] = ()
     """What could not be read of the file's names, in words."""
 
+    @cached_property
+    def _places(self) -> list[int]:
+        """Addresses of functions, in order."""
+        return sorted(self.functions)
+
     def function(self, address: int) -> str:
         """The name of the function around an address, or the address."""
-        around = memories.stretch(address) or ()
-        before = [place for place in self.functions if place <= address and place in around]
-        if not before:
+        index = bisect.bisect_right(self._places, address) - 1
+        if index < 0 or self._places[index] not in (memories.stretch(address) or ()):
             return f"0x{address:06X}"
-        first = max(before)
+        first = self._places[index]
         return self.functions[first] + (f"+{address - first}" if address > first else "")
 
     def place(self, address: int) -> str:
