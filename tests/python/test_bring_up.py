@@ -62,19 +62,26 @@ def carry_out(desk: Desk, command: str, patience: int) -> str:
     return str(desk.type(command, patience))
 
 
-class Board(Desk):
-    """The board that a stage names, as its command switches it on: `bench`, and what `--set` changes of it."""
+class SwitchedOn(Desk):
+    """As `stillspin board` switches one on, with what `--set` changes of it."""
+
+    def __init__(self, *changes: str) -> None:
+        native = core.load()
+        schema, known = core.plant_schema(native), core.parameters(native)
+        chosen = profile.load("bench", schema, known, resources.DEFAULT_MOTOR)
+        self.board = power.power(native, chosen, profile.changes(list(changes), schema, known), 1)
+        self.wait(250)
+
+
+class Board(SwitchedOn):
+    """The board that a stage names."""
 
     def __init__(self, stage: str, *changes: str) -> None:
         command = re.search(r"^`stillspin board(.*)`$", STAGES[stage], re.MULTILINE)
         assert command
         words = re.findall(r"--set (\S+)", command[1])
         assert command[1] == "".join(f" --set {word}" for word in words), "nothing else is understood here"
-        native = core.load()
-        schema, known = core.plant_schema(native), core.parameters(native)
-        chosen = profile.load("bench", schema, known, resources.DEFAULT_MOTOR)
-        self.board = power.power(native, chosen, profile.changes([*words, *changes], schema, known), 1)
-        self.wait(250)
+        super().__init__(*words, *changes)
 
 
 def shape(line: str) -> str:

@@ -342,6 +342,7 @@ def test_a_transcript_is_without_echo_prompt_and_escapes():
     assert transcript.answered
     assert transcript.feed(b"gt\b \bet y\r\nfault: over-") == ["get y"]
     assert transcript.feed(b"current\r\n") == ["fault: over-current"]
+    assert transcript.feed(b"> \r\n! fault: asked by nobody\r\n> ") == ["! fault: asked by nobody"]
 
 
 def completions(table, text):

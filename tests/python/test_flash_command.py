@@ -68,9 +68,15 @@ def test_a_board_gets_an_image_another_one_and_is_compared(files, flash):
         assert status == 0
         assert re.search(r"sectors D, C, B erased, \d+ words written and verified", said)
         assert flash(files / "new.hex", *kernel, "--port", port, "--verify")[0] == 0
-    assert "the chip runs: drive" in (files / "loader.log").read_text()
+    assert "the chip runs: the drive" in (files / "loader.log").read_text()
     words = struct.unpack("<65536H", (files / "flash.bin").read_bytes())
     assert list(words[: make.UPDATE_END - make.START]) == make.cells(NEW)[: make.UPDATE_END - make.START]
+
+
+def test_a_board_without_an_image_says_at_its_end_that_no_drive_runs(files):
+    with virtual(files):
+        pass
+    assert "the chip runs: its boot code, which waits for an image; no drive" in (files / "loader.log").read_text()
 
 
 def test_nobody_at_the_port_is_one_line_with_a_remedy(files, flash):

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from function_desk import Desk
-from test_bring_up import agrees, shape
+from test_bring_up import STAGES, SwitchedOn, agrees, shape
 from typer.main import get_command
 
 from stillspin import cli, core
@@ -49,14 +49,9 @@ def blocks_of_the_console() -> list[str]:
     return [block for block in re.findall(r"^```\n(.*?)^```$", text, re.M | re.S) if block.startswith("> ")]
 
 
-@pytest.mark.parametrize(("name", "plant"), [("tune", {}), ("board", {"link": {"source_voltage": 1.0}})])
-def test_the_console_answers_what_the_way_says(name, plant) -> None:
-    native = core.load()
-    bench = profile.load("bench", core.plant_schema(native), core.parameters(native), "A")
-    sections = {**bench.plant, "solver": {"method": "rk4"}}
-    for section, entries in plant.items():
-        sections[section] = {**sections.get(section, {}), **entries}
-    desk = Desk(bench.parameters, sections, wait=250)
+@pytest.mark.parametrize(("name", "changes"), [("tune", []), ("board", ["link.source_voltage=1"])])
+def test_the_console_answers_what_the_way_says(name: str, changes: list[str]) -> None:
+    desk = SwitchedOn(*changes)
     command, came = "", [""]
     try:
         for line in (line for block in blocks(name) if block.startswith("> ") for line in block.splitlines()):
@@ -131,6 +126,16 @@ def test_a_board_says_what_its_page_shows(tmp_path: Path) -> None:
 
     expected = said(shown[2].replace("/tmp", str(tmp_path)))
     assert said(done.stdout)[: len(expected)] == expected, done.stdout
+
+
+def test_the_way_to_a_board_names_the_boards_of_the_bring_up() -> None:
+    rows = dict(re.findall(r"^\| ([1-9]) \| [^|]+ \| ([^|]+) \|$", page("board"), re.MULTILINE))
+    assert sorted(rows) == [stage[-1] for stage in sorted(STAGES)]
+    for stage, text in STAGES.items():
+        (named,) = re.findall(r"^(`stillspin board.*`)$", text, re.MULTILINE)
+        before = re.search(r"^(`stillspin board.*`)$", STAGES.get(f"Stage {int(stage[-1]) - 1}", ""), re.MULTILINE)
+        said = rows[stage[-1]]
+        assert said == named or (said.startswith("the same") and before and before[1] == named), stage
 
 
 def test_the_way_to_tuning_needs_few_commands() -> None:

@@ -26,6 +26,8 @@ _FILE = struct.Struct(f"<{_WORDS}H")
 _STAND_IN_ENTRY = (0x007F, 0x4000)
 """A new board has been programmed over JTAG: a branch to the start of sector A."""
 
+_IN_WORDS = {"waiting": "its boot code, which waits for an image; no drive", "drive": "the drive"}
+
 
 def _new_flash() -> list[int]:
     words = [layout.ERASED] * _WORDS
@@ -80,6 +82,6 @@ def serve(file: Path, kernel: Program, link: Path | None, speed: float) -> None:
         file.write_bytes(_FILE.pack(*board.flash))
         board.power_cycle()
         board.advance(round(SLICE / 1e-8))
-        print(f"switched off; in flash boot the chip runs: {board.running}")
+        print(f"switched off; in flash boot the chip runs: {_IN_WORDS.get(board.running, board.running)}")
     finally:
         desk.close()

@@ -38,7 +38,7 @@ class Transcript:
         if self._expected is not None and words.removeprefix(PROMPT.strip()).strip() == self._expected:
             self._expected = None
             return None
-        return words if words else None
+        return None if words in {"", PROMPT.strip()} else words
 
 
 def is_prompt(line: str) -> bool:
