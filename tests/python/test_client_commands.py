@@ -119,6 +119,7 @@ def test_a_conflict_that_the_next_values_resolve_is_none(ask, fake, tmp_path):
         (("params", "dump", "--drive", "/dev/none"), 3, "there is no serial port /dev/none"),
         (("params", "dump", "--drive", "usb:x"), 2, "must be like serial:///dev/ttyUSB0"),
         (("scope", "speed", "--out", "x.xls"), 2, "x.xls: the ending must be one of .parquet, .csv, .mf4"),
+        (("scope", "speed", "--edge", "now", "--level", "5"), 2, "--level: no meaning with --edge now"),
         (("scope", "speed=fast"), 2, "full scale of speed: 'fast' is no number"),
         (("monitor", "--duration", "-1"), 2, "is out of range; 0 … ∞"),
     ],
@@ -217,6 +218,14 @@ def test_an_mf4_file_is_read_by_asammdf(tmp_path):
     assert np.array_equal(signal.samples, capture.signals["current_q"])
     assert np.array_equal(signal.timestamps, capture.time)
     assert signal.unit == "A"
+
+
+def test_a_level_alone_is_a_trigger(ask, tmp_path):
+    """On the first signal, which has to rise through it."""
+    result = ask("scope", "speed", "current_d", "--level", 5, "--out", "level.parquet")
+    assert result.exit_code == 0, result.stderr
+    about = json.loads(pq.read_table(tmp_path / "level.parquet").schema.metadata[b"stillspin"])
+    assert [about["trigger"][key] for key in ("signal", "level", "edge")] == ["speed", 5.0, "rising"]
 
 
 def test_a_capture_that_cannot_be_written_leaves_nothing(drive, tmp_path, monkeypatch):

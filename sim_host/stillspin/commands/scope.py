@@ -12,6 +12,7 @@ from stillspin.commands import capture_file
 from stillspin.commands.connection import DriveOption, opened
 from stillspin.counted import counted
 from stillspin.drive.scope import Channel, Trigger
+from stillspin.errors import InputError
 from stillspin.options import number, whole
 from stillspin.quantity import Range
 from stillspin.report import tables
@@ -25,9 +26,19 @@ def scope(
     where: DriveOption = "",
     trigger: Annotated[str, typer.Option("--trigger", "-t", help="Signal of the trigger [default: the first].")] = "",
     level: Annotated[
-        str, typer.Option("--level", "-l", metavar="NUMBER", help="Level of the trigger, in the signal's unit.")
-    ] = "0",
-    edge: Annotated[str, typer.Option("--edge", "-e", help="rising, falling, either, above, below, or now.")] = "",
+        str,
+        typer.Option(
+            "--level", "-l", metavar="NUMBER", help="Level of the trigger, in the signal's unit [default: 0]."
+        ),
+    ] = "",
+    edge: Annotated[
+        str,
+        typer.Option(
+            "--edge",
+            "-e",
+            help="rising, falling, either, above, below, or now [default: rising with an option of the trigger].",
+        ),
+    ] = "",
     hysteresis: Annotated[
         float | None,
         typer.Option(
@@ -80,11 +91,15 @@ def scope(
     for file in files:
         capture_file.check(file)
     channels = [_channel(text) for text in signals]
-    chosen = edge or ("rising" if trigger else "now")
+    given = {"--trigger": trigger != "", "--level": level != "", "--hysteresis": hysteresis is not None}
+    chosen = edge or ("rising" if any(given.values()) else "now")
+    if chosen == "now" and any(given.values()):
+        named = ", ".join(name for name, is_given in given.items() if is_given)
+        raise InputError(f"{named}: no meaning with --edge now, which waits for nothing")
     source = trigger or channels[0].signal
     with opened(where) as drive, Console(stderr=True).status("waiting for the trigger"):
         signal = drive.table.signal(source)
-        wanted = Trigger(source, signal.to_user(signal.to_raw(level)), chosen, hysteresis)
+        wanted = Trigger(source, signal.to_user(signal.to_raw(level or 0)), chosen, hysteresis)
         capture = drive.capture(
             *channels, trigger=wanted, decimation=decimation, pretrigger=pretrigger / 100, timeout=timeout, run=run
         )
