@@ -90,3 +90,28 @@ def test_a_person_finds_currents_torque_power_load_and_temperature_among_the_sig
         page.wait_for_selector("[data-value=temperature]:has-text('°C')")
         drive.set("temperature_limit", 0)
         page.wait_for_selector("[data-value=temperature]:text-is('–')")
+
+
+@needs_board
+def test_a_box_is_ticked_that_is_plotted_and_no_other(page):
+    """After a page is opened with as many as there may be, and after a choice that was refused."""
+    eight = ["speed", "current_d", "current_q", "state", "fault", "limit", "link_voltage", "load_torque"]
+    with Drive.virtual() as drive, Server(drive) as server:
+
+        def ticked():
+            return {box.input_value() for box in page.locator("#signals input:checked").all()}
+
+        server.bench.plot(eight)
+        page.goto(server.address)
+        page.wait_for_selector("#state:has-text('ready')")
+        page.click("#chooser summary")
+        assert ticked() == set(eight)
+        assert page.is_disabled("#signals input[value=angle]")
+        page.uncheck("#signals input[value=fault]")
+        page.wait_for_selector("#plots [data-value=fault]", state="detached")
+        page.click("#signals input[value=power]")  # one box, and more signals of the drive than are left
+        page.wait_for_selector("#note:has-text('can be plotted at once')")
+        assert ticked() == set(eight) - {"fault"}
+        server.bench.plot(eight[:2])  # by another page
+        page.wait_for_selector("#plots [data-value=state]", state="detached")
+        assert ticked() == set(eight[:2])

@@ -32,7 +32,7 @@ export class Live {
     this.names = null;
     by("signals").replaceChildren(
       ...this.table.map(({ name, unit, meaning }) => {
-        const box = make("input", { type: "checkbox", value: name, checked: plotted.includes(name) });
+        const box = make("input", { type: "checkbox", value: name });
         box.onchange = () => this.choose();
         return make("label", { class: "check", title: meaning }, box, ` ${name} `, make("em", {}, unit));
       }),
@@ -40,11 +40,25 @@ export class Live {
     this.begin(plotted);
   }
 
+  get boxes() {
+    return [...by("signals").querySelectorAll("input")];
+  }
+
   choose() {
-    const boxes = [...by("signals").querySelectorAll("input")];
-    const names = boxes.filter((box) => box.checked).map((box) => box.value);
-    for (const box of boxes) box.disabled = !box.checked && names.length >= MOST;
-    if (names.length) this.link.ask("plot", { signals: names }).catch(this.fail);
+    const names = this.boxes.filter((box) => box.checked).map((box) => box.value);
+    this.mark(names);
+    if (!names.length) return;
+    this.link.ask("plot", { signals: names }).catch((error) => {
+      this.mark(this.names);
+      this.fail(error);
+    });
+  }
+
+  mark(names) {
+    for (const box of this.boxes) {
+      box.checked = names.includes(box.value);
+      box.disabled = !box.checked && names.length >= MOST;
+    }
   }
 
   /** Old values are no values. */
@@ -56,6 +70,7 @@ export class Live {
   begin(names) {
     if (this.names?.join() === names.join()) return;
     this.names = names;
+    this.mark(names);
     this.forget();
     const signals = names.map((name) => this.table.find((signal) => signal.name === name));
     this.panels = panels(by("plots"), signals, make);
