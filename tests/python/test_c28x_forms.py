@@ -164,6 +164,7 @@ def test_every_form_is_executed_and_changes_the_status_bits_that_the_table_says(
         ("MOV ACC,#-1000", [0xFF20, 0xFC18]),
         ("MOV T,AL", [0x2DA9]),
         ("FFCRET *XAR7", [0x7620]),
+        ("INTR EMU", [0x761C]),
     ],
 )
 def test_known_words(text, words):

@@ -89,6 +89,7 @@ _OTHER_SPELLINGS = tuple(
         (r"((?:LSL|LSR|ASR|SFR|LSL64|LSR64|ASR64) [^,]+,)([^#T].*)", r"\1#\2"),
         (r"SPM #(.+)", r"SPM \1"),
         (r"FFCRET (.+)", r"LB \1"),
+        (r"INTR EMU", r"INTR EMUINT"),
         (r"SUB ([^,]+),#(.+)", r"ADD \1,#-(\2)"),  # there is no such code of its own
     )
 )
