@@ -19,8 +19,8 @@ CUT_OFF = """() => [...document.querySelectorAll("body *")]
 """What is wider than the box that it stands in: words run out of it, or are reached by scrolling sideways alone."""
 
 
-@pytest.mark.parametrize(("width", "height"), SIZES)
-def test_nothing_is_cut_off_and_no_third_of_it_is_empty(page, server, width, height):
+def expect_all_in_sight(page, server, width, height):
+    """In every tab."""
     page.set_viewport_size({"width": width, "height": height})
     page.goto(server.address)
     page.wait_for_selector("#state:has-text('ready')")
@@ -34,9 +34,29 @@ def test_nothing_is_cut_off_and_no_third_of_it_is_empty(page, server, width, hei
         assert page.evaluate(CUT_OFF) == []
         sheet = page.locator(f"#{tab}").bounding_box()
         assert sheet["y"] + sheet["height"] > 0.95 * height
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_nothing_is_cut_off_and_no_third_of_it_is_empty(page, server, width, height):
+    expect_all_in_sight(page, server, width, height)
     page.click("[data-tab=live]")
     last = page.locator("#plots canvas").last.bounding_box()
     assert last["y"] + last["height"] > 0.9 * height  # the plots, and not only their frame
+
+
+@needs_board
+def test_nothing_is_cut_off_of_all_that_a_drive_has_to_tell(page):
+    """Every parameter and signal, and a fault in its words."""
+    with Drive.virtual(speed=1.0) as drive, Server(drive) as server:
+        for width, height in SIZES:
+            expect_all_in_sight(page, server, width, height)
+        drive.set("link_minimum", 390)
+        page.click("[data-tab=live]")
+        page.click("#chooser summary")
+        page.check("#keep")
+        page.click("#hold")
+        page.wait_for_selector("#fault:has-text('link_minimum')")
+        assert page.evaluate(CUT_OFF) == []
 
 
 @needs_board
