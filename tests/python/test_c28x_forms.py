@@ -165,6 +165,7 @@ def test_every_form_is_executed_and_changes_the_status_bits_that_the_table_says(
         ("MOV T,AL", [0x2DA9]),
         ("FFCRET *XAR7", [0x7620]),
         ("INTR EMU", [0x761C]),
+        ("MOV AL,*ARP3", [0x92B3]),
     ],
 )
 def test_known_words(text, words):

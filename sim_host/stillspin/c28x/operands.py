@@ -32,7 +32,12 @@ _WORDS = {
 _LONGS = {**{f"@XAR{n}": 0xA0 + n for n in range(8)}, "@ACC": 0xA9, "@P": 0xAB, "@XT": 0xAC}
 _REGISTERS = {16: _WORDS, 32: _LONGS}
 _NAMES = {bits: {code: text for text, code in {**_INDIRECT, **there}.items()} for bits, there in _REGISTERS.items()}
-_OTHER = {"@T": "@TH", "T": "@TH", **{f"*XAR{n}": f"*+XAR{n}[0]" for n in range(8)}}
+_OTHER = {
+    **{"@T": "@TH", "T": "@TH"},
+    **{f"*XAR{n}": f"*+XAR{n}[0]" for n in range(8)},
+    **{f"*ARP{n}": f"*,ARP{n}" for n in range(8)},
+}
+"""How else TI writes a location, its disassembler among them."""
 
 Evaluate = Callable[[str], int]
 """The value of an expression. ValueError: it is none."""
