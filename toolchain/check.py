@@ -84,7 +84,7 @@ DESCRIPTIONS = {
     "interrupt": "interrupts read the configuration, no parameters",
     "writers": "what a period has is written by its owner",
     "inside": "tests see the drive by names of the field",
-    "circles": "no circle of imports in the Python package",
+    "circles": "imports in the Python package point downward",
     "conditionals": "no code that only one build sees",
     "int16": "C compiles with a 16-bit int",
     "registers": "the register map agrees with the tables of the chip",
