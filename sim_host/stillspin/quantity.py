@@ -78,7 +78,7 @@ class Range:
             why = ": no comma or space within it, decimals come after a point" if _PARTED.fullmatch(typed) else ""
             raise InputError(f"{name}: '{typed.strip()}' is no number{why}; {self}")
         number, unit = match.groups()
-        if unit and unit != self.unit:
+        if unit and unit.casefold() != self.unit.casefold():  # as at the console
             wanted = f"is in {self.unit}" if self.unit else "has no unit"
             raise InputError(f"{name} {wanted}, not in {unit}: '{typed.strip()}'; {self}")
         return float(number), unit

@@ -344,6 +344,15 @@ def test_the_console_ends_with_1_when_a_line_is_refused_and_sends_the_others(ask
     assert result.stderr == "stillspin: not carried out: refuse y\n"
 
 
+@pytest.mark.parametrize("typed", ["version\r", " version ", "\tversion"])
+def test_a_line_of_another_systems_file_is_answered_at_once(ask, fake, typed):
+    begin = time.monotonic()
+    result = ask("console", "-c", typed, "-c", "get  x\r")
+    assert time.monotonic() - begin < 6.0, "the time that is waited for a prompt"
+    assert result.stdout == "heard version\nheard get x\n"
+    assert fake.lines == ["version", "get x"]
+
+
 def test_a_transcript_is_without_echo_prompt_and_escapes():
     transcript = Transcript()
     transcript.expect("get x")

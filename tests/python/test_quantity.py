@@ -15,7 +15,17 @@ CURRENT = Range(0.1, 16, "A", decimals=2, set_by="trip_current")
 
 @pytest.mark.parametrize(
     ("typed", "number"),
-    [("1.5", 1.5), (" 2 A ", 2.0), ("2A", 2.0), ("1e1", 10.0), ("1.5E+0A", 1.5), (".5", 0.5), ("5.", 5.0), ("+3", 3.0)],
+    [
+        ("1.5", 1.5),
+        (" 2 A ", 2.0),
+        ("2A", 2.0),
+        ("2 a", 2.0),
+        ("1e1", 10.0),
+        ("1.5E+0A", 1.5),
+        (".5", 0.5),
+        ("5.", 5.0),
+        ("+3", 3.0),
+    ],
 )
 def test_digits_one_point_an_exponent_and_the_unit_are_taken(typed, number):
     assert CURRENT.read(typed, "current_limit") == number

@@ -13,7 +13,7 @@ import typer
 
 from stillspin.commands.connection import DriveOption, opened, say_unsaved
 from stillspin.commands.console_session import Session, session
-from stillspin.commands.transcript import Transcript
+from stillspin.commands.transcript import Transcript, as_sent
 from stillspin.drive import Drive
 from stillspin.drive.link_counts import ask_counts
 from stillspin.drive.requester import wait_until
@@ -61,7 +61,7 @@ def _say_all(drive: Drive, current: Session, lines: Iterable[str]) -> ExitCode:
     status = ExitCode.DONE
     before = _refusals(drive)
     for line in lines:
-        say(drive, current, line.rstrip("\n"))
+        say(drive, current, as_sent(line))
         after = _refusals(drive)
         if after != before:
             print(f"stillspin: not carried out: {line.strip()}", file=sys.stderr)

@@ -14,7 +14,7 @@ from prompt_toolkit.patch_stdout import patch_stdout
 
 from stillspin.commands.completion import Words
 from stillspin.commands.console_session import Session
-from stillspin.commands.transcript import Transcript
+from stillspin.commands.transcript import Transcript, as_sent
 from stillspin.drive import Drive
 from stillspin.link.errors import DriveError
 
@@ -51,7 +51,7 @@ def talk(drive: Drive, current: Session) -> None:
         try:
             while not drive.link.lost:
                 try:
-                    line = terminal.prompt(bottom_toolbar=bar.text).strip()
+                    line = as_sent(terminal.prompt(bottom_toolbar=bar.text))
                     if line in _LEAVE:
                         break
                     transcript.expect(line)

@@ -41,6 +41,11 @@ class Transcript:
         return None if words in {"", PROMPT.strip()} else words
 
 
+def as_sent(line: str) -> str:
+    """A line as the console echoes it: one space between words, none around them, no end of another system's lines."""
+    return " ".join(line.split()).encode("ascii", "replace").decode("ascii")
+
+
 def is_prompt(line: str) -> bool:
     """Whether the console waits behind this, with nothing typed."""
     return _plain(line) == PROMPT.strip()
