@@ -91,6 +91,6 @@ int32_t polarity_step(polarity_t* s, uint32_t angle_bam) {
   s->last_bam = angle_bam;
   const int32_t current_q20 = drive_sign[s->segment] * s->current_q20;
   s->tick++;
-  if (s->tick == s->length) begin_segment(s);
+  if (s->tick >= s->length) begin_segment(s);
   return current_q20;
 }

@@ -96,9 +96,10 @@ LONGEST = "mutants"
 """Hours: runs only where it is named."""
 
 
-def _is_fresh(step: Step, made_of: str) -> bool:
+def _is_fresh(step: Step) -> bool:
     known = records.load(ROOT).get(step.name)
-    return known is not None and (known["command"], known["sources"]) == (f"stillspin {step.command}", made_of)
+    now = (f"stillspin {step.command}", records.sources_of(ROOT, step.name))
+    return known is not None and (known["command"], known["sources"]) == now
 
 
 def make_noisy() -> None:
@@ -123,9 +124,9 @@ def _run(step: Step, out: Path, seed: int) -> tuple[int, dict[str, Any]]:
     return status, gather(out) if out.exists() else {}
 
 
-def carry_out(step: Step, made_of: str) -> bool:
+def carry_out(step: Step) -> bool:
     """Run a command and keep its figures; False when it failed."""
-    each = []
+    each, made_of = [], records.sources_of(ROOT, step.name)
     for seed in range(1, step.seeds + 1):
         status, found = _run(step, WORK / step.name, seed)
         if status not in (0, 1) or not found:  # 1: a goal is missed, which is a result
@@ -168,9 +169,8 @@ def main() -> int:
         for name, command in old.items():
             print(f"figures: {name} was made from older sources; renew it: {command}")
         return 1 if old else 0
-    made_of = records.sources(ROOT)
     steps, made = _chosen(options.long, options.names)
-    todo = [step for step in steps if options.again or not _is_fresh(step, made_of)]
+    todo = [step for step in steps if options.again or not _is_fresh(step)]
     by_make = [name for name in made if options.again or name in old or name not in records.load(ROOT)]
     count, left = len(todo) + len(by_make), len(steps) + len(made)
     print(f"figures: {count} of {left} commands to run, {left - count} are up to date", flush=True)
@@ -178,7 +178,7 @@ def main() -> int:
     make_noisy()
     for k, step in enumerate(todo, 1):
         print(f"figures: {k} of {count}: stillspin {step.command}", flush=True)
-        failed = not carry_out(step, made_of) or failed
+        failed = not carry_out(step) or failed
     for k, name in enumerate(by_make, len(todo) + 1):
         print(f"figures: {k} of {count}: {records.COMMANDS[name].command}", flush=True)
         failed = not carry_out_make(name) or failed

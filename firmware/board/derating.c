@@ -5,6 +5,7 @@
 // Where neither is given it is half of the current limit, safe where that is up to twice the rated current.
 // From 0.9 of that current on the limit falls in a straight line to it.
 
+#include "control/rise.h"
 #include "firmware/board/functions.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/sampling.h"
@@ -31,9 +32,7 @@ static int32_t celsius_q8(int32_t code) {
 
 // Share left between `from` (all) and `to` (the share at the end).
 static int32_t share_between(int32_t value, int32_t from, int32_t to, int32_t end_q15) {
-  if (value <= from) return INTERLOCK_SHARE_ONE;
-  if (value >= to) return end_q15;
-  return INTERLOCK_SHARE_ONE - qc_mul(q_div(value - from, to - from, 15), INTERLOCK_SHARE_ONE - end_q15, 15);
+  return INTERLOCK_SHARE_ONE - qc_mul(rise_q30(value, from, to), INTERLOCK_SHARE_ONE - end_q15, 30);
 }
 
 static drive_fault_t follow_heat_sink(int32_t* share_q15) {

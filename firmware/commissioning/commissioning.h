@@ -41,7 +41,7 @@ typedef struct {
   uint16_t index;
   uint16_t turn;  // period of those in which the sums take turns
   int32_t tick;
-  int32_t level_q20, step_q20;  // the level, and by how much the next one is above it
+  int32_t first_q20, step_q20;  // the first level, and by how much each is above the one before
   dead_time_config_t one_volt;  // the devices, if their drop were that
 } staircase_t;
 
@@ -83,7 +83,7 @@ typedef struct {
   uint16_t leg;
   uint32_t angle_bam;  // of the last period
   int32_t tick;
-  int32_t waited;  // for a turn's end, periods
+  uint16_t waited;  // for a turn's end, periods
 } spin_t;
 
 typedef struct {

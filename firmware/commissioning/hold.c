@@ -46,7 +46,7 @@ void commissioning_hold(drive_t* d) {
   const int32_t limit = d->config.values.current_limit / 4;
   const int32_t wanted = q_limit(uniform ? braking_q20(d) : holding_q20(d), limit);
   int32_t* const current = &d->control.references.current_q20.q;
-  *current = uniform ? *current + q_shr(wanted - *current, 6) : wanted;
+  *current = uniform ? q_follow_near(*current, wanted, 6) : wanted;
 }
 
 bool commissioning_align(drive_t* d) {

@@ -110,15 +110,17 @@ bool commissioning_spin(drive_t* d) {
   s->angle_bam = d->position.selected.angle_bam;
   const int32_t turned_bam = angle_diff_bam(s->angle_bam, before_bam);
   const bool steady = s->tick >= SETTLE_PERIODS;
-  if (steady || s->leg != (uint16_t)LEG_FIRST) {
-    add_period(d, steady ? &s->station[s->leg] : &s->ramp[s->leg - 1u], turned_bam);
+  if (steady) {
+    add_period(d, &s->station[s->leg], turned_bam);
+  } else if (s->leg != (uint16_t)LEG_FIRST) {
+    add_period(d, &s->ramp[s->leg - 1u], turned_bam);
   }
   // From the last quarter to the first, it has come round: noise may turn it back from one period to the next. A shaft
   // that does not turn is waited for as long as a leg lasts, and what was summed up judges itself.
   const bool round = before_bam >> 30 == 3u && s->angle_bam >> 30 == 0u;
   const bool is_end = s->tick == SETTLE_PERIODS - 1 || s->tick == LEG_PERIODS - 1;
   const bool waits = is_end && !round && s->waited < LEG_PERIODS;
-  s->waited = waits ? s->waited + 1 : 0;
+  s->waited = waits ? (uint16_t)(s->waited + 1u) : 0u;
   s->tick = qc_add_sat(s->tick, (s->arrived && !waits) ? 1 : 0);
   if (s->tick < LEG_PERIODS) return false;
   s->leg++;

@@ -62,9 +62,10 @@ static int32_t opposite_q20(const drive_t* d) {
 // Where there is room for a line. sign: -1 or 1.
 static bool place_levels(const drive_t* d, int32_t sign, int32_t most) {
   staircase_t* const s = &commissioning.staircase;
+  if (most <= 0) return false;
   const int32_t least = q_max(most / 10 * 4, ripple_q20(d) / 10 * 24);
   if (least > most / 4 * 3) return false;
-  s->level_q20 = sign * least;
+  s->first_q20 = sign * least;
   s->step_q20 = sign * ((most - least) / (int32_t)(STAIRCASE_LEVELS - 1u));
   return true;
 }
@@ -73,7 +74,7 @@ static bool place_levels(const drive_t* d, int32_t sign, int32_t most) {
 static void place(const drive_t* d) {
   staircase_t* const s = &commissioning.staircase;
   const int32_t limit = q_min(bearable_q20(), opposite_q20(d));
-  s->level_q20 = 0;
+  s->first_q20 = 0;
   s->step_q20 = 0;
   // A rotor without saliency follows: nothing holds it.
   if (!place_levels(d, 1, commissioning.uniform ? limit : q_min(limit, held_q20()))) {
@@ -146,15 +147,15 @@ bool commissioning_climb(drive_t* d) {
     return false;
   }
   commissioning_hold(d);
-  const bool over = s->index >= STAIRCASE_LEVELS;
-  const bool rests = over || (s->tick == 0 && interlock_is_warm());
-  commissioning_set_d(d, rests ? 0 : s->level_q20);
-  if (over) {
+  if (s->index >= STAIRCASE_LEVELS) {
+    commissioning_set_d(d, 0);
     if (d->control.references.current_q20.d != 0) return false;
     s->tick = qc_add_sat(s->tick, 1);
     commissioning_add_still(d);
     return s->tick > SETTLE_PERIODS + 1;
   }
+  const bool rests = s->tick == 0 && interlock_is_warm();
+  commissioning_set_d(d, rests ? 0 : s->first_q20 + (int32_t)s->index * s->step_q20);
   if (rests) return false;
   staircase_level_t* const l = &s->level[s->index];
   if (s->tick == 0) clear(l, sizeof *l);
@@ -162,7 +163,6 @@ bool commissioning_climb(drive_t* d) {
   if (s->tick > SETTLE_PERIODS) add_one(d, s);
   if (s->tick < SETTLE_PERIODS + LEVEL_PERIODS) return false;
   l->link_q16 = d->samples.link_q16;
-  s->level_q20 += s->step_q20;
   s->index++;
   s->tick = 0;
   return false;

@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "control/brake_limit.h"
+#include "control/rise.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/inertia.h"
@@ -65,12 +66,11 @@ static int32_t load_current(const drive_t* d) {
 // U s / 6. From that speed to twice of it the limit rises evenly, so that no step of it makes the current chatter.
 static int32_t usable_current(const drive_t* d) {
   const int32_t limit_q20 = d->control.current_limit_q20;
-  const int32_t more_q20 = limit_q20 - d->config.salient_q20;
-  if (more_q20 <= 0) return limit_q20;
+  const int32_t salient_q20 = d->config.salient_q20;
+  if (salient_q20 >= limit_q20) return limit_q20;
   const int32_t even_bpp = q_clamp(qc_mul_sat(d->samples.link_q16, d->config.salient_bpp_q4, 20), 1, FASTEST_EVEN_BPP);
-  const int32_t beyond_bpp = qc_abs_sat(d->position.selected.speed_bpp) - even_bpp;
-  const int32_t lacks_q30 = qc_over(q_clamp(even_bpp - beyond_bpp, 0, even_bpp), q_invert(even_bpp), 30);
-  return limit_q20 - qc_mul(more_q20, lacks_q30, 30);
+  const int32_t told_q30 = rise_q30(qc_abs_sat(d->position.selected.speed_bpp), even_bpp, 2 * even_bpp);
+  return q_mix(salient_q20, limit_q20, told_q30, 30);
 }
 
 int32_t drive_current_headroom(const drive_t* d) {

@@ -35,9 +35,9 @@ static uint16_t made_slice_ticks;
 
 static packed_text_t make(drive_config_t* c) {
   (void)c;
+  made_slice_ticks = (uint16_t)q_shr_round(parameters.slice_time * 100, 16);
   if (parameters.current_law == CURRENT_LAW_HYSTERESIS && !drive_source_selected_has(SOURCE_MEASURES))
     return SAY_current_law_1_needs_position_source_0;
-  made_slice_ticks = (uint16_t)q_shr_round(parameters.slice_time * 100, 16);
   return (HAL_PWM_PERIOD_TICKS % made_slice_ticks != 0u) ? SAY_100_us_must_be_a_whole_number : PACKED_NONE;
 }
 

@@ -119,8 +119,10 @@ bool decimal_is_whole(const decimal_t* number) { return number->digits % ten[num
 bool decimal_raw(const decimal_t* number, uint16_t q, int32_t* raw) {
   const uint16_t beyond = (q > 31u) ? (uint16_t)(q - 31u) : 0u;
   const int32_t one = ten[number->decimals];
-  if (qc_abs_sat(number->digits) > (INT32_MAX >> beyond)) return false;
-  *raw = q_div(number->digits * ((int32_t)1 << beyond), one, (uint16_t)(q - beyond));
+  const int32_t most = INT32_MAX >> beyond;
+  *raw = number->digits;
+  if (*raw > most || *raw < -most) return false;
+  *raw = q_div(*raw * ((int32_t)1 << beyond), one, (uint16_t)(q - beyond));
   return qc_abs_sat(*raw) < INT32_MAX;
 }
 

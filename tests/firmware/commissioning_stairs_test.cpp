@@ -34,7 +34,7 @@ class CommissioningStairs : public Drive {
     (void)commissioning_climb(&drive);
     commissioning.tick = 1;
   }
-  static double level(int index) { return real(stairs().level_q20 + stairs().step_q20 * index, 20); }
+  static double level(int index) { return real(stairs().first_q20 + stairs().step_q20 * index, 20); }
   static double ripple() {
     const double pulse = inside::config().modulator.pulse_ticks / 1e4;
     return real(inside::link_q16(), 16) * 2.0 / 3.0 * real(commissioning.model.yd_q30, 30) * pulse;

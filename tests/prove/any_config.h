@@ -28,6 +28,8 @@ static inline void any_control(drive_config_t* c) {
   c->ramp_step_bpp = any_from(0, INT32_MAX);
   c->hold_gain_q30 = any_from(0, 10737418L);
   c->hold_below_bpp = any_from(0, SPEED_MAX_BPP / 4);
+  c->salient_q20 = any_from(0, INT32_MAX);
+  c->salient_bpp_q4 = any_i32;
 }
 
 static inline void any_position(drive_config_t* c) {

@@ -11,8 +11,6 @@
 #include "control/speed_controller.h"
 #include "tests/prove/any_model.h"
 
-#define EMF_MAX_Q16 1073741824L
-
 static machine_model_t told, model;
 
 // Whatever is learnt, at any current: from each state to such a state again.
@@ -80,10 +78,10 @@ static void weaken_field(void) {
 static void any_vector(if_start_t* s, const if_start_config_t* c) {
   s->tick = any_from(0, c->align_periods);
   s->speed_bpp = any_from(-TURN_MAX_BPP, TURN_MAX_BPP);
-  s->mean_q16 = any_dq(EMF_MAX_Q16);
+  s->mean_q16 = any_dq(TURN_EMF_END_Q16);
   s->per_emf_q4.d = any_i32;
   s->per_emf_q4.q = any_i32;
-  s->drop_q16 = any_i32;
+  s->drop_q16 = any_from(-TURN_DROP_END_Q16, TURN_DROP_END_Q16);
   s->rotor_bpp = any_i32;
   s->mean_bpp = any_i32;
   s->agreed = any_from(0, IF_START_AGREED - 1);
@@ -101,13 +99,14 @@ static void turn_vector(int32_t periods) {
   if_start_begin(&s, any_u32, any_bool());
   if (any_bool()) any_vector(&s, &c);
   if (any_bool()) if_start_renew(&s, &c);
-  if (if_start_step(&s, &c, any_dq(VOLTAGE_MAX_Q16), any_u32, any_speed()) != IF_START_PENDING) return;
+  if (if_start_step(&s, &c, any_dq(TURN_COMMAND_END_Q16), any_u32, any_speed()) != IF_START_PENDING) return;
+  //@ assert WITHIN(s.mean_q16.d, TURN_EMF_END_Q16) && WITHIN(s.mean_q16.q, TURN_EMF_END_Q16);
   //@ assert -683565276 <= s.speed_bpp <= 683565276 && 0 <= s.tick <= 65536;
-  //@ assert -1073741824 <= s.mean_q16.d <= 1073741824 && -1073741824 <= s.mean_q16.q <= 1073741824;
   //@ assert 0 <= s.agreed < 3000 && 0 <= s.waited <= 100000;
 }
 
 static void limit_and_hold(void) {
+  (void)rise_q30(any_i32, any_i32, any_i32);
   position_hold_t h = {false, 0, 0};
   ramp_t r = {0, 0, 0};
   mtpa_t m;

@@ -6,6 +6,7 @@
 
 #include "control/if_start.h"
 #include "control/machine_model.h"
+#include "control/rise.h"
 #include "control/speed_controller.h"
 #include "tests/prove/ends.h"
 #include "tests/prove/qmath_ranges.h"
@@ -36,6 +37,9 @@ void machine_model_follow(machine_model_t* m, int32_t iq_q20);
     ensures OF_TURN(m); */
 void machine_model_renew_sensitivity(machine_model_t* m);
 
+/*@ assigns \result \from x, from, to; ensures FROM_TO(\result, 0, RISE_ONE_Q30); */
+int32_t rise_q30(int32_t x, int32_t from, int32_t to);
+
 /*@ requires \valid(s) && \valid_read(in) && FROM_TO(s->nominal.share_q30, 0, 1073741824);
     requires WITHIN(in->lowest_q20, CURRENT_MAX_Q20) && WITHIN(in->highest_q20, CURRENT_MAX_Q20);
     assigns s->current_q20, s->integral_q20, \result \from *s, law, *in;
@@ -47,7 +51,16 @@ int32_t speed_controller_step(speed_controller_t* s, speed_law_t law, const spee
     ensures FLAG(\result); ensures FROM_TO(s->nominal.share_q30, 0, 1073741824); */
 bool speed_controller_init(speed_controller_t* s, const speed_controller_config_t* c, const machine_model_t* m);
 
-/*@ requires \valid(s) && \valid_read(c); assigns *s, \result \from *s, *c, voltage_q16, seen_bam, seen_bpp;
+// What the current controller may command; 200 A through 50 ohm; the mean of what that leaves, so that its sign may
+// change.
+#define TURN_COMMAND_END_Q16 268435456L
+#define TURN_DROP_END_Q16 655360000L
+#define TURN_EMF_END_Q16 923795456L
+
+/*@ requires \valid(s) && \valid_read(c) && WITHIN(s->drop_q16, TURN_DROP_END_Q16);
+    requires VECTOR_DQ(voltage_q16, TURN_COMMAND_END_Q16);
+    assigns *s, \result \from *s, *c, voltage_q16, seen_bam, seen_bpp;
+    ensures VECTOR_DQ(s->mean_q16, TURN_EMF_END_Q16) && WITHIN(s->drop_q16, TURN_DROP_END_Q16);
     ensures WITHIN(s->speed_bpp, TURN_MAX_BPP) && FROM_TO(s->tick, 0, 65536) && FLAG(s->backward);
     ensures FROM_TO(s->current_q20, 0, 200 * AMPERES_Q20); ensures FROM_TO(\result, 0, 2); */
 if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16, uint32_t seen_bam,

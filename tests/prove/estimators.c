@@ -66,6 +66,7 @@ static void step_avv(const estimator_input_t* in) {
   s.observer.speed_remainder_q8 = any_from(0, 255);
   (void)avv_step(&s, &c, in);
   (void)avv_angle_error(&s.regression, in->model);
+  (void)avv_printed_step(&s, &c, in);
 }
 
 static void step_zvv(const estimator_input_t* in) {

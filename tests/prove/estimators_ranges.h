@@ -48,6 +48,10 @@ void sensor_match_step(int32_t* mismatch_q30, const regression_t* r, q_inverse_t
 estimator_output_t avv_step(avv_t* s, const avv_config_t* c, const estimator_input_t* in);
 
 /*@ requires \valid(s) && \valid_read(c) && \valid_read(in); assigns *s, \result \from *s, *c, indirect:*in;
+    ensures OF_OUTPUT(\result); ensures WITHIN(s->observer.speed_bpp, SPEED_MAX_BPP); */
+estimator_output_t avv_printed_step(avv_t* s, const avv_config_t* c, const estimator_input_t* in);
+
+/*@ requires \valid(s) && \valid_read(c) && \valid_read(in); assigns *s, \result \from *s, *c, indirect:*in;
     ensures OF_OUTPUT(\result); ensures WITHIN(s->speed_bpp, SPEED_MAX_BPP) && FROM_TO(s->waited, 0, 10); */
 estimator_output_t zvv_step(zvv_t* s, const zvv_config_t* c, const estimator_input_t* in, int32_t id_reference_q20);
 

@@ -24,6 +24,7 @@
 #include "firmware/sources/encoder/encoder.h"
 #include "firmware/sources/flux/flux.h"
 #include "firmware/sources/paper/paper.h"
+#include "firmware/start/flying/flying.h"
 #include "firmware/start/flying/look.h"
 #include "firmware/start/if_start/if_start.h"
 #include "firmware/start/start.h"
@@ -110,6 +111,10 @@ commissioning_outcome_t commissioning_use(commissioning_report_t* report) {
   any_parameters();
   return any_bool() ? COMMISSIONING_DONE : COMMISSIONING_PARTLY;
 }
+bool commissioning_level_is_lost(const commissioning_t* c) {
+  (void)c;
+  return any_bool();
+}
 void commissioning_solve_motion(commissioning_t* c) {
   c->torque_q24 = any_i32;
   c->accel_q12 = any_i32;
@@ -122,6 +127,7 @@ void parameters_reset(void) { any_parameters(); }
 // The constants that features have beside it.
 static void any_parts(void) {
   encoder_part.take();  // of the parameters, which are any
+  (void)hysteresis_part.make(&drive.config);
   hysteresis_part.take();
   flying_part.take();
   start_ways.open_loop = any_bool();
@@ -188,7 +194,7 @@ void prove_interrupt(void) {
   drive_reset();
   any_parameters();
   // Where what the code limits ends, so that EVA does not look farther.
-  /*@ loop widen_hints "all", -536870912, -268435456, -134217728, -10000, 5, 8, 10000, 5242880, 134217728, 268435456,
-                       536870912; */
+  /*@ loop widen_hints "all", -536870912, -268435456, -134217728, -10000, 5, 8, 14, 10000, 5242880, 134217728,
+     268435456, 536870912; */
   while (any_bool()) one_period();
 }

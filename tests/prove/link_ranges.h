@@ -7,6 +7,7 @@
 #include "firmware/can/segments.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/suggest.h"
+#include "firmware/dictionary/units.h"
 #include "firmware/link/splitter.h"
 #include "firmware/text/catalogue.h"
 #include "firmware/text/text.h"
@@ -116,6 +117,9 @@ void put_spaces_to(octet_writer_t* w, uint16_t column);
     ensures \result <= count; ensures \result <= 80;
     ensures number->decimals <= 9; ensures -2147483647 <= number->digits; */
 uint16_t text_number(const uint16_t* text, uint16_t count, decimal_t* number);
+
+/*@ requires unit < UNITS; assigns \result \from unit; ensures -28 <= \result <= 28; */
+int16_t unit_exponent(uint16_t unit);
 
 /*@ requires \valid_read(number) && number->decimals <= 9 && q <= 40 && \valid(raw);
     assigns *raw, \result \from *number, q; ensures \initialized(raw);

@@ -8,8 +8,9 @@
 #include "svpwm/modulator.h"
 #include "tests/prove/svpwm_ranges.h"
 
-// Both in a period; that a window ends behind its start no interval knows.
-#define OF_WINDOW(w) (FROM_TO((w).start, 0, 9800) && FROM_TO((w).end, 0, 9800) && FROM_TO((w).state, 0, 7))
+// That a window ends behind its start no interval knows, nor which are kept: one that is not may begin behind the
+// period.
+#define OF_WINDOW(w) (FROM_TO((w).start, 0, 12740) && FROM_TO((w).end, -1000, 9800) && FROM_TO((w).state, 0, 7))
 #define OF_WINDOWS(p) (OF_WINDOW((p)->windows[0]) && OF_WINDOW((p)->windows[1]) && OF_WINDOW((p)->windows[2]))
 
 /*@ requires \valid(s) && \valid_read(c) && \valid(pulses) && VECTOR_AB(voltage_q16, ASKED_MAX_Q16);

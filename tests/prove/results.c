@@ -1,6 +1,7 @@
 // What the background level makes of a commissioning: with any sums at all, more than the sequence can give, any counts
 // and any parameters. Of the model, only that there are 1 to 20 pole pairs.
 
+#include "firmware/commissioning/phases.h"
 #include "firmware/commissioning/result.h"
 #include "firmware/config/rules.h"
 #include "firmware/mode/mode.h"
@@ -23,6 +24,11 @@ static void any_staircase(staircase_t* s) {
 static tensor_sums_t any_tensor(void) {
   const tensor_sums_t s = {any_i64, any_i64, any_i64, any_i64, any_i64, any_i64, any_i64, any_i32};
   return s;
+}
+
+int32_t map_level_q20(const map_t* m, uint16_t level) {
+  (void)level;
+  return any_from(q_min(m->most_q20, 0), q_max(m->most_q20, 0));
 }
 
 static void any_map(map_t* m) {

@@ -45,6 +45,6 @@ void prove_selftest(void) {
     feature_status.loading = any_bool();
     selftest_count(any_u32);
     (void)selftest_service();
-    put_selftest(&line);
+    selftest_line.put(&line);
   }
 }

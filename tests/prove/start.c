@@ -21,7 +21,7 @@ static void move(void) {
   polarity_t s;
   s.current_q20 = 0;
   polarity_begin(&s, any_current(), any_i32, any_u32, any_i32);
-  //@ loop widen_hints s.passes, 6;
+  //@ loop widen_hints s.passes, 6; loop widen_hints s.tick, 159, 160;
   while (any_bool()) {
     s.bounded = any_bool();
     (void)polarity_step(&s, any_u32);

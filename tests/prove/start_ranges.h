@@ -17,10 +17,10 @@
 #include "tests/prove/qmath_ranges.h"
 
 /*@ requires \valid(s) && FROM_TO(s->passes, 1, 6) && FROM_TO(s->length, 20, 160) && FROM_TO(s->tick, 0, 159);
-    requires FROM_TO(s->segment, 0, 13) || s->result != 0;
+    requires FROM_TO(s->segment, 0, 6);
     assigns *s, \result \from *s, angle_bam;
     ensures WITHIN(\result, CURRENT_MAX_Q20) && FROM_TO(s->result, 0, 3) && FROM_TO(s->passes, 1, 6);
-    ensures FROM_TO(s->tick, 0, 159) && FROM_TO(s->segment, 0, 14); */
+    ensures FROM_TO(s->tick, 0, 159) && FROM_TO(s->segment, 0, 6) && FROM_TO(s->length, 20, 160); */
 int32_t polarity_step(polarity_t* s, uint32_t angle_bam);
 
 /*@ requires \valid(s) && \valid_read(r) && \valid_read(m) && FROM_TO(s->passes, 0, 8);

@@ -24,6 +24,7 @@ bool hal_nvm_write(uint16_t address, const uint16_t* octets, uint16_t count) {
 hal_nvm_state_t hal_nvm_step(void) { return (hal_nvm_state_t)any_up_to(NVM_FAILED); }
 
 bool drive_is_energised(void) { return any_bool(); }
+bool drive_source_is_left_out(const parameters_t* p) { return p->position_source > 0 && any_bool(); }
 void drive_parameters_changed(void) {}
 packed_text_t parameter_conflict(void) { return any_bool() ? PACKED_NONE : any_up_to(PACKED_NONE - 1u); }
 

@@ -25,7 +25,7 @@ static void send(const svpwm_pulses_t* pulses) {
   pattern.pulses = *pulses;
   for (uint16_t k = 0; k < SVPWM_EDGES; k++) pattern.pulses.at[k] = any_ticks(-1, SVPWM_PERIOD_TICKS);
   for (uint16_t k = 0; k < SVPWM_WINDOWS; k++) {
-    const svpwm_window_t w = {any_ticks(0, 9800), any_ticks(0, 9800), any_up_to(7)};
+    const svpwm_window_t w = {any_ticks(0, 12740), any_ticks(-1000, 9800), any_up_to(7)};
     pattern.windows[k] = w;
   }
   const int32_t link_q16 = any_from(0, VOLTAGE_MAX_Q16);

@@ -8,7 +8,7 @@
 #include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 #include "firmware/text/catalogue.h"
-#include "tests/prove/any.h"
+#include "tests/prove/any_parameters.h"
 
 #define WORDS_OF_A_KIND 48  // at least; what comes behind is there for no kind
 
@@ -107,6 +107,8 @@ void prove_numbers(void) {
   any_word();
   for (uint16_t count = 0; count <= EDITOR_LINE; count++) (void)text_number(word.text, count, &number);
   for (uint16_t kind = 0; kind < CATALOGUES; kind++) words_of(kind);
+  any_parameters();
+  for (uint16_t unit = 0; unit < (uint16_t)UNITS; unit++) (void)unit_exponent(unit);
   for (uint16_t q = 0; q <= 40u; q++) {
     for (uint16_t decimals = 0; decimals <= TEXT_DECIMALS_MAX; decimals++) one_format(q, decimals);
   }

@@ -15,7 +15,8 @@
     predicate words_of(words_of_line_t* a) = \valid_read(a) && a->count <= COMMAND_WORDS &&
       (a->count > 0 ==> word_of(&a->word[0])) && (a->count > 1 ==> word_of(&a->word[1])) &&
       (a->count > 2 ==> word_of(&a->word[2])) && (a->count > 1 ==> behind(&a->word[0], &a->word[1])) &&
-      (a->count > 2 ==> behind(&a->word[1], &a->word[2]));
+      (a->count > 2 ==> behind(&a->word[1], &a->word[2])) &&
+      (\forall integer k; 0 <= k < a->count ==> word_of(&a->word[k]));
 */
 
 /*@ requires words_of(a) && unit < PACKED_TEXTS; assigns \nothing; */
@@ -25,13 +26,16 @@ bool word_is(const words_of_line_t* a, uint16_t k, packed_text_t unit);
 word_t words_from(const words_of_line_t* a, uint16_t k);
 
 /*@ requires words_of(a) && k < a->count && unit < PACKED_TEXTS && \valid(number) && \separated(number, a);
-    assigns *number; ensures \result <= a->word[k].count; */
+    assigns *number; ensures \result <= a->word[k].count; ensures number->decimals <= 9; */
 uint16_t number_with_unit(const words_of_line_t* a, uint16_t k, packed_text_t unit, decimal_t* number);
 
 // What the table says, the part commands reads.
 /*@ requires \valid_read(name + (0 .. count - 1)); assigns \nothing;
     ensures \result == \null || (\valid_read(\result) && \result->q <= 32); */
 const parameter_info_t* parameter_named(const uint16_t* name, uint16_t count);
+
+/*@ assigns \nothing; ensures \result <= 40; */
+uint16_t parameter_q(const parameter_info_t* p);
 
 /*@ assigns \nothing; ensures \result < PACKED_TEXTS; */
 packed_text_t parameter_unit(const parameter_info_t* p);

@@ -57,15 +57,25 @@ def test_figures_of_older_sources_are_said_to_be_that() -> None:
     assert "`make image-check` and `make isr-cost`" in state
 
 
-def test_a_record_is_of_older_sources_as_soon_as_one_of_them_changes(tmp_path: Path) -> None:
-    for folder in ("control", "tests/m3"):
-        (tmp_path / folder).mkdir(parents=True)
-    source = tmp_path / "control/a.c"
-    source.write_text("int a;\n", encoding="utf-8")
-    records.keep(tmp_path, "isr-cost", "make isr-cost", {"observer": 1})
+@pytest.mark.parametrize(
+    ("path", "name", "command"),
+    [
+        ("control/a.c", "isr-cost", "make isr-cost"),
+        ("control/a.c", "type-test", "toolchain/figures.py type-test"),
+        ("sim_host/stillspin/type_test/duties.py", "type-test", "toolchain/figures.py type-test"),
+        ("sim_host/stillspin/hil/loop.py", "hil-can", "toolchain/figures.py hil-can"),
+    ],
+)
+def test_a_record_is_of_older_sources_as_soon_as_one_of_them_changes(
+    tmp_path: Path, path: str, name: str, command: str
+) -> None:
+    source = tmp_path / path
+    source.parent.mkdir(parents=True)
+    source.write_text("a = 1\n", encoding="utf-8")
+    records.keep(tmp_path, name, command, {"observer": 1})
     assert records.outdated(tmp_path) == {}
-    source.write_text("int b;\n", encoding="utf-8")
-    assert records.outdated(tmp_path) == {"isr-cost": "make isr-cost"}
+    source.write_text("a = 2\n", encoding="utf-8")
+    assert records.outdated(tmp_path) == {name: command}
 
 
 def test_runs_stand_by_their_speed_and_a_source_that_has_none_leaves_a_gap() -> None:

@@ -90,7 +90,7 @@ def test_a_command_with_several_seeds_runs_with_each(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(renewal, "ROOT", tmp_path)
     monkeypatch.setattr(renewal.subprocess, "run", run_command)
     step = renewal.Step("two", "reproduce A10 --seed SEED --out OUT", seeds=2)
-    assert renewal.carry_out(step, "sum")
+    assert renewal.carry_out(step)
     assert [words[-3] for words in ran] == ["1", "2"]
     record = records.load(tmp_path)["two"]
     assert record["figures"]["metrics"]["A10"]["peak"] == {"value": 2.0, "lost": 0, "unit": "deg"}
@@ -112,9 +112,9 @@ def renewed(monkeypatch: pytest.MonkeyPatch) -> Callable[..., tuple[int, list[st
             records, "load", lambda _: {k: v | {"sources": "old"} if k in old else v for k, v in kept.items()}
         )
         monkeypatch.setattr(records, "outdated", lambda _: {k: kept[k]["command"] for k in kept if k in old})
-        monkeypatch.setattr(records, "sources", lambda _: "now")
+        monkeypatch.setattr(records, "sources", lambda *_: "now")
         monkeypatch.setattr(renewal, "render", lambda *_, **__: ())
-        monkeypatch.setattr(renewal, "carry_out", lambda step, _: carry_out(step.name))
+        monkeypatch.setattr(renewal, "carry_out", lambda step: carry_out(step.name))
         monkeypatch.setattr(renewal, "carry_out_make", carry_out)
         monkeypatch.setattr(sys, "argv", ["figures.py", *arguments])
         return renewal.main(), ran

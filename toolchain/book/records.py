@@ -25,6 +25,11 @@ RUNS = (
     *(f"sim_host/stillspin/{name}" for name in ("cases", "measure", "runs")),
     *(f"!sim_host/chip/{name}" for name in ("c28x", "code_cpu", "code_flash_library")),
 )
+# What a run of `stillspin` is made of beside these, by the record's name.
+BESIDE = {
+    "type-test": ("sim_host/stillspin/type_test", "sim_host/stillspin/campaign", "sim_host/motors"),
+    **{name: ("sim_host/stillspin/hil",) for name in ("hil-serial", "hil-can", "hil-whole")},
+}
 # The C++ tests in which the drive's C runs.
 TESTS = tuple(
     f"tests/{name}" for name in ("bench", "control", "estimators", "firmware", "fuzz", "hal", "qmath", "svpwm")
@@ -111,9 +116,14 @@ def sources(root: Path, trees: tuple[str, ...] = RUNS) -> str:
     return total.hexdigest()[:16]
 
 
+def trees_of(name: str) -> tuple[str, ...]:
+    """What decides the figures of a record."""
+    return COMMANDS[name].sources if name in COMMANDS else (*RUNS, *BESIDE.get(name, ()))
+
+
 def sources_of(root: Path, name: str) -> str:
-    """The same for a record by its name, as the sources are now."""
-    return sources(root, COMMANDS[name].sources if name in COMMANDS else RUNS)
+    """The sum for a record by its name, as the sources are now."""
+    return sources(root, trees_of(name))
 
 
 def load(root: Path) -> dict[str, dict[str, Any]]:
@@ -140,7 +150,7 @@ def outdated(root: Path) -> dict[str, str]:
     now: dict[tuple[str, ...], str] = {}
     found = {}
     for name, record in load(root).items():
-        trees = COMMANDS[name].sources if name in COMMANDS else RUNS
+        trees = trees_of(name)
         if now.setdefault(trees, sources(root, trees)) != record["sources"]:
             found[name] = record["command"] if name in COMMANDS else f"toolchain/figures.py {name}"
     return found

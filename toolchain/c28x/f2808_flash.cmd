@@ -104,6 +104,7 @@ SECTIONS
                 libstillspin_control.a<machine_model.*>(.text, .econst, .switch)
                 libstillspin_control.a<mtpa.*>(.text, .econst, .switch)
                 libstillspin_control.a<position_hold.*>(.text, .econst, .switch)
+                libstillspin_control.a<rise.*>(.text, .econst, .switch)
                 libstillspin_control.a<speed_controller.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<axis.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<blend.*>(.text, .econst, .switch)

@@ -90,6 +90,7 @@ TEXTS = (
         "firmware/text/catalogue.c",
         "firmware/text/packed_text.c",
         "firmware/dictionary/parameters.c",
+        "firmware/dictionary/units.c",
         "firmware/drive/signals.c",
         *LOOKS,
     ),
@@ -260,14 +261,15 @@ PARTS = (
         eva(
             name,
             (f"tests/prove/{name}.c", *sources),
-            (*READER, "-eva-slevel-function", "information_collect:100,look:100"),
+            (*READER, *rounds, "-eva-slevel-function", "information_collect:100,look:100"),
             f"{OF_QMATH},turned{given}",
             headers=(ROTATION_RANGES, *headers),
         )
-        for name, sources, given, headers in (
-            ("estimators", ESTIMATORS, "", (ESTIMATORS_RANGES,)),
-            ("look", ("estimators/deviation.c", "estimators/regression.c", *CONTROL), "", (LOOK_RANGES,)),
-            ("observer", ESTIMATORS, ",look", (LOOK_RANGES, ESTIMATORS_RANGES)),
+        for name, sources, given, headers, rounds in (
+            ("estimators", ESTIMATORS, "", (ESTIMATORS_RANGES,), ()),
+            ("look", ("estimators/deviation.c", "estimators/regression.c", *CONTROL), "", (LOOK_RANGES,), ()),
+            # An observer begins with nothing, word by word.
+            ("observer", ESTIMATORS, ",look", (LOOK_RANGES, ESTIMATORS_RANGES), ("-eva-auto-loop-unroll", "64")),
         )
     ),
     *(
@@ -338,7 +340,7 @@ PARTS = (
             *(*READER, "-eva-split-return-function", "find:full"),
             *("-eva-slevel-function", "find:100,handle:100,drive_signals:300,record:20"),
         ),
-        *(OF_QMATH, OF_WRITING, "packed_equals,packed_find"),
+        *(OF_QMATH, OF_WRITING, "packed_equals,packed_find,unit_exponent"),
     ),
     of_link(
         "console",
