@@ -15,17 +15,18 @@
     predicate words_of(words_of_line_t* a) = \valid_read(a) && a->count <= COMMAND_WORDS &&
       (a->count > 0 ==> word_of(&a->word[0])) && (a->count > 1 ==> word_of(&a->word[1])) &&
       (a->count > 2 ==> word_of(&a->word[2])) && (a->count > 1 ==> behind(&a->word[0], &a->word[1])) &&
-      (a->count > 2 ==> behind(&a->word[1], &a->word[2])) &&
-      (\forall integer k; 0 <= k < a->count ==> word_of(&a->word[k]));
+      (a->count > 2 ==> behind(&a->word[1], &a->word[2]));
 */
 
-/*@ requires words_of(a) && unit < PACKED_TEXTS; assigns \nothing; */
+/*@ requires \valid_read(a) && a->count <= COMMAND_WORDS && (k < a->count ==> word_of(&a->word[k]));
+    requires unit < PACKED_TEXTS; assigns \nothing; */
 bool word_is(const words_of_line_t* a, uint16_t k, packed_text_t unit);
 
 /*@ requires words_of(a) && k < a->count; assigns \nothing; */
 word_t words_from(const words_of_line_t* a, uint16_t k);
 
-/*@ requires words_of(a) && k < a->count && unit < PACKED_TEXTS && \valid(number) && \separated(number, a);
+/*@ requires words_of(a) && k < a->count && word_of(&a->word[k]) && (k + 1 < a->count ==> word_of(&a->word[k + 1]));
+    requires unit < PACKED_TEXTS && \valid(number) && \separated(number, a);
     assigns *number; ensures \result <= a->word[k].count; ensures number->decimals <= 9; */
 uint16_t number_with_unit(const words_of_line_t* a, uint16_t k, packed_text_t unit, decimal_t* number);
 

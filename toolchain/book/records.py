@@ -28,7 +28,7 @@ RUNS = (
 # What a run of `stillspin` is made of beside these, by the record's name.
 BESIDE = {
     "type-test": ("sim_host/stillspin/type_test", "sim_host/stillspin/campaign", "sim_host/motors"),
-    **{name: ("sim_host/stillspin/hil",) for name in ("hil-serial", "hil-can", "hil-whole")},
+    **dict.fromkeys(("hil-serial", "hil-can", "hil-whole"), ("sim_host/stillspin/hil",)),
 }
 # The C++ tests in which the drive's C runs.
 TESTS = tuple(
