@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from stillspin import core
-from stillspin.cases import drift, profile, scenario_file
+from stillspin.cases import profile, scenario_file
 from stillspin.errors import InputError
 from stillspin.options import by_mark
-from stillspin.runs import execute
+from stillspin.runs import drift, execute
 from stillspin.runs.execute import Settings
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")

@@ -8,16 +8,16 @@ from dataclasses import replace
 import pytest
 
 from stillspin import core
-from stillspin.cases import effects, profile, scenario_file
-from stillspin.cases.effects import ALONE, WITHOUT, Effect, Worlds
+from stillspin.cases import profile, scenario_file
 from stillspin.drive import own
 from stillspin.errors import InputError
 from stillspin.measure.figures import Result
 from stillspin.options import by_mark
 from stillspin.report.explain_report import content
 from stillspin.report.explanation import Explanation
-from stillspin.runs import explain, records
+from stillspin.runs import effects, explain, records
 from stillspin.runs.assess import ScenarioResult
+from stillspin.runs.effects import ALONE, WITHOUT, Effect, Worlds
 from stillspin.runs.execute import Settings, prepare
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")

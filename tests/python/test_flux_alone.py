@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from stillspin import core
-from stillspin.cases import profile, variant
+from stillspin.cases import profile
 from stillspin.measure import metrics
+from stillspin.runs import variant
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
 

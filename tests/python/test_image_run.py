@@ -14,14 +14,14 @@ from c28x_chip import linked_file
 from typer.testing import CliRunner
 
 from stillspin import cli, core
-from stillspin.cases import profile, scenario_file, variant
+from stillspin.cases import profile, scenario_file
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.hil import built
 from stillspin.image import closed_loop, opened, run_record
 from stillspin.link.errors import NoAnswerError
 from stillspin.measure import figures, pieces
-from stillspin.runs import execute
+from stillspin.runs import execute, variant
 from stillspin.runs.execute import Settings
 
 LENGTH = 0.8

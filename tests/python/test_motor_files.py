@@ -181,22 +181,22 @@ def test_the_vector_follows_from_the_nameplate():
         (
             ("magnet_flux = 0.11", "magnet_flux = 0.9"),
             "drive's rules",
-            "beyond link_maximum; speed_limit = 1500: at most 857 rpm with link_maximum = 420 V",
+            "beyond link_maximum; speed_limit = 1500 rpm: at most 857 rpm with link_maximum = 420 V",
         ),
         (
             ("current_limit = 5.0", "current_limit = 5.0\ntrip_current = 4.0"),
             "drive's rules",
-            "current_limit; trip_current = 4: at least 5.00 A with current_limit = 5 A; or current_limit = 5: at",
+            "current_limit; trip_current = 4 A: at least 5.00 A with current_limit = 5 A; or current_limit = 5 A: at",
         ),
         (
             ("current_limit = 5.0", "current_limit = 5.0\ncurrent_divider = 2\ncurrent_bandwidth = 2600"),
             "drive's rules",
-            "current_divider 2; current_bandwidth = 2600: at most 2080 rad/s with current_divider = 2",
+            "current_divider 2; current_bandwidth = 2600 rad/s: at most 2080 rad/s with current_divider = 2",
         ),
         (
             ("inductance_d = 11e-3", "inductance_d = 0.15e-3"),
             "drive's rules",
-            "inductances, map, speed_limit; inductance_d = 0.15: at least",
+            "inductances, map, speed_limit; inductance_d = 0.15 mH: at least",
         ),
         (
             ("current_limit = 5.0", "current_limit = 19.0\ncurrent_bandwidth = 2600"),

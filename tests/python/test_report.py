@@ -9,9 +9,10 @@ from typer.testing import CliRunner
 
 import fake_core
 from stillspin import cli
-from stillspin.cases import scenario_file, variant
+from stillspin.cases import scenario_file
 from stillspin.measure.figures import Result
 from stillspin.report import page as report
+from stillspin.runs import variant
 
 
 @pytest.fixture(scope="module")

@@ -8,10 +8,10 @@ import pytest
 
 import fake_core
 from stillspin import core, resources
-from stillspin.cases import profile, scenario_file, variant
+from stillspin.cases import profile, scenario_file
 from stillspin.errors import InputError
 from stillspin.measure import figures
-from stillspin.runs import execute
+from stillspin.runs import execute, variant
 
 # Scenario, figure, the paper's number, the goal in `bench`, the goal in `ideal`: the project's commitments. A change of
 # any of them is a decision, not a slip; the same numbers stand in the book.

@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 
 from stillspin import core
-from stillspin.cases import profile, variant
+from stillspin.cases import profile
+from stillspin.runs import variant
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
 

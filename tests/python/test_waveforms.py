@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from stillspin.cases import scenario_file, variant
+from stillspin.cases import scenario_file
 from stillspin.measure import deviation_sweep, metrics, pieces, speed_profile, waveforms
+from stillspin.runs import variant
 
 DEAD = 200  # ticks of dead band
 MACHINE = {

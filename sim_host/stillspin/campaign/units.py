@@ -11,12 +11,12 @@ from pathlib import Path
 from stillspin import core, resources
 from stillspin.campaign import duty
 from stillspin.campaign.draw import Unit
-from stillspin.cases import profile, variant
+from stillspin.cases import profile
 from stillspin.counted import counted
 from stillspin.entry import Entry
 from stillspin.errors import CampaignError, InputError
 from stillspin.revision import revision
-from stillspin.runs import commission
+from stillspin.runs import commission, variant
 from stillspin.runs.execute import Settings
 from stillspin.runs.reporting import report
 from stillspin.runs.workers import Task, Where, workers

@@ -71,5 +71,6 @@ def _bound(entry: Entry, now: float, said: Callable[[float], str]) -> str:
         steps = round(right * 10**entry.places, 3)
         bound = (math.floor(steps) if right < now else math.ceil(steps)) / 10**entry.places
         if not said(bound):
-            return f"{entry.name} = {now:g}: {word} {bound:.{entry.places}f} {entry.unit}".rstrip()
+            value = f"{now:g} {entry.unit}".rstrip()
+            return f"{entry.name} = {value}: {word} {bound:.{entry.places}f} {entry.unit}".rstrip()
     return ""

@@ -11,7 +11,7 @@ import typer
 
 from stillspin import core, resources
 from stillspin.board import power, serve
-from stillspin.cases import profile, variant
+from stillspin.cases import profile
 from stillspin.drive import state
 from stillspin.errors import InputError
 from stillspin.image import opened
@@ -30,7 +30,7 @@ from stillspin.options import (
     number,
     whole,
 )
-from stillspin.runs import commission
+from stillspin.runs import commission, variant
 
 
 def board(

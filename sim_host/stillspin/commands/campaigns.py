@@ -12,7 +12,6 @@ import typer
 
 from stillspin import core, resources
 from stillspin.board.image import blocks_of
-from stillspin.cases import drift as drifts
 from stillspin.cases import scenario_file
 from stillspin.cases.scenario import Scenario
 from stillspin.counted import counted
@@ -40,6 +39,7 @@ from stillspin.options import (
 from stillspin.report import junit, tables
 from stillspin.report import page as report
 from stillspin.report.junit import JunitOption
+from stillspin.runs import drift as drifts
 from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.reproduction import Options, carry_out
 from stillspin.runs.workers import Where

@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from stillspin import core
-from stillspin.cases import profile, variant
+from stillspin.cases import profile
 from stillspin.hil import runs
 from stillspin.hil.runs import LoopRun
 from stillspin.revision import revision
-from stillspin.runs import commission, execute
+from stillspin.runs import commission, execute, variant
 
 
 @dataclass(frozen=True)

@@ -8,12 +8,12 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 
-from stillspin.cases.effects import ALONE, WITHOUT
 from stillspin.measure.figures import Result
 from stillspin.report.canvas import subplots
 from stillspin.report.explanation import Explanation
 from stillspin.report.page import unit_text
 from stillspin.report.style import COLOURS, STYLE, WIDTH
+from stillspin.runs.effects import ALONE, WITHOUT
 
 _ROW = 0.3  # in of height for an effect
 

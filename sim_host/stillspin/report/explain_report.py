@@ -6,11 +6,11 @@ import json
 from pathlib import Path
 from typing import Any
 
-from stillspin.cases.effects import ALONE, WITHOUT
 from stillspin.extras import need
 from stillspin.measure.figures import Result
 from stillspin.report import output
 from stillspin.report.explanation import Explanation
+from stillspin.runs.effects import ALONE, WITHOUT
 from stillspin.runs.execute import Settings
 
 PICTURE = "explain.svg"

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from stillspin.cases.effects import WITHOUT, Effect
 from stillspin.cases.scenario import Scenario
 from stillspin.measure.figures import Result
 from stillspin.runs.assess import ScenarioResult
+from stillspin.runs.effects import WITHOUT, Effect
 
 NOTICEABLE = 0.1
 """Share of a figure that must go with an effect before it is said to dominate: runs differ by the noise's course."""

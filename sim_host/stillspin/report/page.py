@@ -11,12 +11,12 @@ from typing import Any
 
 from stillspin import extras
 from stillspin.cases.profile import Profile
-from stillspin.cases.variant import Beside
 from stillspin.counted import counted
 from stillspin.measure.figures import Result
 from stillspin.report.output import MARK, RUNS
 from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.execute import Settings
+from stillspin.runs.variant import Beside
 
 PAGE = "report.html"
 

@@ -9,9 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from stillspin.cases.effects import ALONE, WITHOUT
 from stillspin.cases.scenario import Scenario
-from stillspin.cases.variant import Beside
 from stillspin.catalogue import Entry as MotorEntry
 from stillspin.catalogue import Verdict
 from stillspin.counted import counted
@@ -24,6 +22,8 @@ from stillspin.report import page as report
 from stillspin.report.explanation import Explanation
 from stillspin.runs import commission
 from stillspin.runs.assess import ScenarioResult
+from stillspin.runs.effects import ALONE, WITHOUT
+from stillspin.runs.variant import Beside
 
 _COLOURS = {"met": "green", "missed": "red", "no value": "red", "": ""}
 _RIGHT = {

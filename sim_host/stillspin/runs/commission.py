@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from stillspin import core, toml_table
+from stillspin import core, toml_table, whole_file
 from stillspin.cases.profile import Changes, Profile, merged
 from stillspin.core import NativeCommissioning, NativeCore
 from stillspin.core_loop import NativeStepLoop
@@ -129,13 +128,7 @@ def write(path: Path, result: Result, about: Sequence[str]) -> None:
         if value.used:
             unit = f"  # {value.unit}" if value.unit else ""
             lines.append(f"{value.name} = {value.text}{unit}")
-    try:
-        with tempfile.NamedTemporaryFile("w", dir=path.absolute().parent, delete=False, encoding="utf-8") as file:
-            file.write("\n".join(lines) + "\n")
-        Path(file.name).chmod(0o644)
-        Path(file.name).replace(path)
-    except OSError as error:
-        raise InputError(f"--out {path}: cannot be written ({error.strerror})") from error
+    whole_file.write(path, "\n".join(lines) + "\n", "--out")
 
 
 def check_target(path: Path) -> None:

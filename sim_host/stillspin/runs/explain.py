@@ -15,8 +15,7 @@ from pathlib import Path
 from rich.console import Console
 
 from stillspin import core
-from stillspin.cases import effects, profile
-from stillspin.cases.effects import ALONE, WITHOUT, Case, Effect, Worlds
+from stillspin.cases import profile
 from stillspin.cases.scenario import Scenario
 from stillspin.drive.own import firmware
 from stillspin.options import by_mark
@@ -24,8 +23,9 @@ from stillspin.report import explain_report, output
 from stillspin.report.explanation import Explanation
 from stillspin.report.progress import Bar
 from stillspin.revision import revision
-from stillspin.runs import campaign, commission, execute
+from stillspin.runs import campaign, commission, effects, execute
 from stillspin.runs.assess import ScenarioResult
+from stillspin.runs.effects import ALONE, WITHOUT, Case, Effect, Worlds
 from stillspin.runs.execute import Settings
 from stillspin.runs.reporting import report
 from stillspin.runs.workers import Task, Where, workers

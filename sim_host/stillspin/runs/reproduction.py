@@ -9,9 +9,8 @@ from pathlib import Path
 from rich.console import Console
 
 from stillspin import __version__, core
-from stillspin.cases import profile, variant
+from stillspin.cases import profile
 from stillspin.cases.scenario import Scenario
-from stillspin.cases.variant import Beside, Scheme, Variant
 from stillspin.core import NativeCore
 from stillspin.drive.own import firmware
 from stillspin.errors import InputError
@@ -20,9 +19,10 @@ from stillspin.report import output
 from stillspin.report import page as report
 from stillspin.report.progress import Bar, PhaseBar
 from stillspin.revision import revision
-from stillspin.runs import campaign, commission, execute
+from stillspin.runs import campaign, commission, execute, variant
 from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.execute import Settings
+from stillspin.runs.variant import Beside, Scheme, Variant
 from stillspin.runs.workers import Where
 
 PARAMS = "params.toml"

@@ -12,8 +12,8 @@ from stillspin import core, resources, toml_table
 from stillspin.cases import factors
 from stillspin.cases.profile import merged
 from stillspin.cases.scenario import Goal, Scenario
-from stillspin.cases.variant import Variant
 from stillspin.runs.execute import Settings
+from stillspin.runs.variant import Variant
 
 
 @dataclass(frozen=True)
