@@ -47,8 +47,8 @@ static bool load_map(machine_model_t* m) {
 
 // What resistance and the fastest rotation take off the current's slope fits the look's format (deviation.h).
 static bool damping_fits(const machine_model_t* m, int32_t k_q24) {
-  const int32_t speed_q29 = qc_mul_sat(parameters.speed_limit * parameters.pole_pairs, RAD_PER_RPM_Q47, 26);
-  return q_mul_hi(m->yd_q30, m->rs_q24) + q_mul_hi(speed_q29, k_q24) * 2 < DEVIATION_DAMPING_END_Q22;
+  const int32_t speed_q30 = qc_mul_sat(parameters.speed_limit * parameters.pole_pairs, RAD_PER_RPM_Q47, 25);
+  return q_mul_hi(m->yd_q30, m->rs_q24) + q_mul_hi(speed_q30, k_q24) < DEVIATION_DAMPING_END_Q22;
 }
 
 // What the estimators make of a point of the map fits their formats: of h (machine_model.h) with the largest current

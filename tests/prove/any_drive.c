@@ -44,6 +44,9 @@ static void any_fault(void) {
 }
 
 void any_moment(void) {
+  static bool begun;
+  if (!begun) scope_reset();
+  begun = true;
   if (any_bool()) any_fault();
   drive.state = (drive_state_t)any_up_to(7);
   drive.fault = (drive_fault_t)any_up_to(40);
@@ -88,6 +91,11 @@ void drive_command_stop(void) {}
 void drive_command_coast(void) {}
 void drive_command_reset(void) {}
 void drive_command_look(void) {}
+answer_status_t action_look(octet_writer_t* why) {
+  put_packed(why, (packed_text_t)any_up_to((uint16_t)PACKED_TEXTS - 1u));
+  return (answer_status_t)any_up_to((uint16_t)ANSWER_EDITION);
+}
+void put_look(octet_writer_t* w) { put_packed(w, (packed_text_t)any_up_to((uint16_t)PACKED_TEXTS - 1u)); }
 look_outcome_t drive_look_outcome(void) { return (look_outcome_t)any_up_to(5); }
 int32_t drive_look_rpm(void) { return any_i32; }
 bool drive_knows_speed(const volatile drive_t* d) { return d->heartbeat > 0u && any_bool(); }
