@@ -42,7 +42,7 @@ def test_one_command_makes_all_that_an_update_of_a_virtual_board_needs(tmp_path,
         assert "0.1.0 (a demonstration, for a virtual board alone)" in said
         assert "image complete" in said
         assert stillspin("flash", image, "--port", port, "--verify")[0] == 0
-    assert "the chip runs: drive" in (tmp_path / "log").read_text()
+    assert "the chip runs: the drive" in (tmp_path / "log").read_text()
 
 
 def test_the_same_files_every_time(tmp_path):

@@ -155,7 +155,7 @@ def test_a_demonstration_is_made_and_flashed(client, tmp_path):
     with desk.process(log, (port,), "loader", str(tmp_path / "flash.bin"), "--serial-link", str(port), "--speed", "10"):
         said = client.run("stillspin", "flash", tmp_path / "stillspin_demonstration.bin", "--port", port)
     assert said.returncode == 0, said.stderr
-    assert "the chip runs: drive" in log.read_text()
+    assert "the chip runs: the drive" in log.read_text()
 
 
 def test_the_firmwares_table_is_in_the_wheel(client):
