@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """Runs what the tables of README.md and the book have their figures from, and brings the tables up to date.
 
-Usage: toolchain/figures.py [--long] [--again] [--list] [NAME]...     (make figures, make figures-long)
+Usage: toolchain/figures.py [--long] [--again] [--list | --confirm] [NAME]...     (make figures, make figures-long)
 
 Each command below writes docs/figures/NAME.json. One whose file was made by the same command from the same sources is
 left out, so a run that was broken off goes on where it ended; --again leaves out nothing. --long adds what takes
 longer than the rest together, and the commands of the Makefile that keep records of their own, but for the mutants.
---list runs nothing: it says which records are of older sources, and the exit status is 1 when there are any. Exit
-status 1 when a command failed.
+--list runs nothing: it says which records are of older sources, and the exit status is 1 when there are any. --confirm
+is for sources that were changed and do as before: it runs one scenario of each command, and where all of them have
+their recorded figures to the last digit, the records count as made of today's sources (toolchain/book/probes.py); else
+the exit status is 1. Exit status 1 when a command failed.
 """
 
 import argparse
@@ -19,7 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from book import records, render
+from book import probes, records, render
 from book.gather import gather, worst
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -139,6 +141,39 @@ def carry_out(step: Step) -> bool:
     return True
 
 
+def _probe(name: str, command: str) -> bool:
+    """Run a part of what made a record: whether it has the record's figures."""
+    print(f"figures: probe of {name}: stillspin {command}", flush=True)
+    _, found = _run(Step(f"probe-{name}", command), WORK / "probe" / name, seed=1)
+    is_same = probes.is_as_recorded(found, records.load(ROOT)[name]["figures"])
+    if not is_same:
+        print(f"figures: {name} has other figures now: {WORK / 'probe' / name / 'metrics.json'}", flush=True)
+    return is_same
+
+
+def confirm(steps: list[Step]) -> bool:
+    """Confirm what was made by the same commands of other sources of the drive; whether that is all that is old."""
+    commands = {step.name: step.command for step in steps}
+    known, old = records.load(ROOT), records.outdated(ROOT)
+    now = {name: records.sources_of(ROOT, name) for name in commands if name in old}
+    alike = {
+        name: known[name]
+        for name, sources in now.items()
+        if known[name]["command"] == f"stillspin {commands[name]}"
+        and known[name]["sources"].partition("+")[2] == sources.partition("+")[2]
+    }
+    left = [name for name in now if name not in alike]
+    for name, is_same in probes.vouched(alike, commands, _probe):
+        if is_same:
+            records.confirm(ROOT, name, now[name])
+            print(f"figures: {name} confirmed", flush=True)
+        else:
+            left.append(name)
+    for name in left:
+        print(f"figures: {name} is of older sources still; renew it: {old[name]}")
+    return not left
+
+
 def carry_out_make(name: str) -> bool:
     """Run a command of the Makefile, which keeps its figures by itself; False when it failed."""
     command = records.COMMANDS[name].command
@@ -160,6 +195,7 @@ def main() -> int:
     parser.add_argument("--long", action="store_true", help="also what takes hours")
     parser.add_argument("--again", action="store_true", help="also what is up to date")
     parser.add_argument("--list", action="store_true", help="only say what was made from older sources")
+    parser.add_argument("--confirm", action="store_true", help="see by a part of each that what is old has not changed")
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(known))
     options = parser.parse_args()
     if unknown := set(options.names) - set(known):
@@ -169,6 +205,9 @@ def main() -> int:
         for name, command in old.items():
             print(f"figures: {name} was made from older sources; renew it: {command}")
         return 1 if old else 0
+    if options.confirm:
+        make_noisy()
+        return 0 if confirm([step for step in STEPS if not options.names or step.name in options.names]) else 1
     steps, made = _chosen(options.long, options.names)
     todo = [step for step in steps if options.again or not _is_fresh(step)]
     by_make = [name for name in made if options.again or name in old or name not in records.load(ROOT)]

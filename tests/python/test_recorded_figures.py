@@ -112,7 +112,7 @@ def renewed(monkeypatch: pytest.MonkeyPatch) -> Callable[..., tuple[int, list[st
             records, "load", lambda _: {k: v | {"sources": "old"} if k in old else v for k, v in kept.items()}
         )
         monkeypatch.setattr(records, "outdated", lambda _: {k: kept[k]["command"] for k in kept if k in old})
-        monkeypatch.setattr(records, "sources", lambda *_: "now")
+        monkeypatch.setattr(records, "sources_of", lambda *_: "now")
         monkeypatch.setattr(renewal, "render", lambda *_, **__: ())
         monkeypatch.setattr(renewal, "carry_out", lambda step: carry_out(step.name))
         monkeypatch.setattr(renewal, "carry_out_make", carry_out)

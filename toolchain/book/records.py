@@ -1,7 +1,8 @@
 """Records: what one command gave, docs/figures/NAME.json, which the tables of README.md and the book are made from.
 
 A record says which command made it, of which sources (a sum over their text), and the figures. The runs of `stillspin`
-are kept by toolchain/figures.py; commands of the Makefile keep their own (toolchain/keep.py).
+are kept by toolchain/figures.py; commands of the Makefile keep their own (toolchain/keep.py). Where the sources changed
+since and the figures were seen not to (figures.py --confirm), it says of which they are now, and of which it was made.
 """
 
 from __future__ import annotations
@@ -116,14 +117,12 @@ def sources(root: Path, trees: tuple[str, ...] = RUNS) -> str:
     return total.hexdigest()[:16]
 
 
-def trees_of(name: str) -> tuple[str, ...]:
-    """What decides the figures of a record."""
-    return COMMANDS[name].sources if name in COMMANDS else (*RUNS, *BESIDE.get(name, ()))
-
-
 def sources_of(root: Path, name: str) -> str:
-    """The sum for a record by its name, as the sources are now."""
-    return sources(root, trees_of(name))
+    """The sum for a record by its name, as the sources are now; behind `+` that of what it alone is made of beside."""
+    if name in COMMANDS:
+        return sources(root, COMMANDS[name].sources)
+    beside = f"+{sources(root, BESIDE[name])}" if name in BESIDE else ""
+    return sources(root) + beside
 
 
 def load(root: Path) -> dict[str, dict[str, Any]]:
@@ -140,17 +139,25 @@ def sums(folder: Path) -> dict[str, str]:
 def keep(root: Path, name: str, command: str, figures: Any, made_of: str = "") -> None:
     """Write a record; `made_of`: the sum over its sources when the command began, where that is not now."""
     content = {"command": command, "sources": made_of or sources_of(root, name), "figures": figures}
-    (root / FOLDER).mkdir(parents=True, exist_ok=True)
-    text = json.dumps(content, indent=1, ensure_ascii=False, sort_keys=True)
-    (root / FOLDER / f"{name}.json").write_text(text + "\n", encoding="utf-8")
+    _write(root, name, content)
+
+
+def confirm(root: Path, name: str, seen_of: str) -> None:
+    """Say of a record that its figures are those of other sources as well; `seen_of`: the sum over these."""
+    content = load(root)[name]
+    _write(root, name, {"made_of": content["sources"], **content, "sources": seen_of})
 
 
 def outdated(root: Path) -> dict[str, str]:
     """Records whose sources have changed since they were made, and what renews each."""
-    now: dict[tuple[str, ...], str] = {}
-    found = {}
-    for name, record in load(root).items():
-        trees = trees_of(name)
-        if now.setdefault(trees, sources(root, trees)) != record["sources"]:
-            found[name] = record["command"] if name in COMMANDS else f"toolchain/figures.py {name}"
-    return found
+    return {
+        name: record["command"] if name in COMMANDS else f"toolchain/figures.py {name}"
+        for name, record in load(root).items()
+        if record["sources"] != sources_of(root, name)
+    }
+
+
+def _write(root: Path, name: str, content: dict[str, Any]) -> None:
+    (root / FOLDER).mkdir(parents=True, exist_ok=True)
+    text = json.dumps(content, indent=1, ensure_ascii=False, sort_keys=True)
+    (root / FOLDER / f"{name}.json").write_text(text + "\n", encoding="utf-8")
