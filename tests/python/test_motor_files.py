@@ -47,6 +47,38 @@ def test_motor_a_works_and_its_start_is_tried(native):
     assert "no problem found" in result.stdout
 
 
+HUB = """
+[machine]
+pole_pairs = 10
+resistance = 0.12
+inductance_d = 0.25e-3
+inductance_q = 0.27e-3
+magnet_flux = 0.03
+rated_peak_current = 15.0
+
+[mechanics]
+inertia = 0.01
+
+[link]
+source_voltage = 24.0
+
+[adc]
+current_range = 40.0
+voltage_range = 36.0
+
+[parameters]
+current_limit = 19.5
+speed_limit = 400
+"""
+"""Of a wheel on 24 V: the switches of a board for 300 V would take a twelfth of that."""
+
+
+def test_the_bench_of_another_board_is_of_its_size(native, tmp_path):
+    found = findings(native, tmp_path, HUB)
+    assert all(finding.works for finding in found.values()), found
+    assert "rpm after 2 s" in found["tried"].words
+
+
 def test_motor_b_works_up_to_its_speed_limit_and_not_beyond(native, tmp_path):
     assert told("check", "B").exit_code == 0
     text = (resources.directory("motors") / "B.toml").read_text(encoding="utf-8")

@@ -4,6 +4,7 @@ import dataclasses
 import importlib
 import math
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -54,6 +55,45 @@ def times(native, name, **changes):
 def test_the_motors_that_ship_are_of_the_size_of_the_defaults(native, name):
     loaded = profile.load("bench", core.plant_schema(native), core.parameters(native), name)
     assert loaded.by_rule == ()
+
+
+BENCH = tomllib.loads((resources.directory("profiles") / "bench.toml").read_text(encoding="utf-8"))
+SECTIONS = {name: keys for name, keys in BENCH.items() if isinstance(keys, dict) and name != "parameters"}
+
+
+@pytest.mark.parametrize("name", ["A", "B", "B-SPM"])
+def test_the_motors_that_ship_have_the_bench_as_it_is_stated(native, name):
+    plant = profile.load("bench", core.plant_schema(native), core.parameters(native), name).plant
+    assert {name: {key: plant[name][key] for key in keys} for name, keys in SECTIONS.items()} == SECTIONS
+
+
+@pytest.mark.parametrize("scales", [(0, -4), (3, -2), (-2, 1), (4, 2)])
+def test_the_bench_is_as_bad_for_a_machine_of_another_size(native, scales):
+    """The same shares of the link's voltage, of the sensors' range and of the rated torque."""
+    amperes, volts = (2.0**scale for scale in scales)
+    reference = similarity.REFERENCE
+    machine = stated(
+        inductance_d=reference.inductance_d * volts / amperes,
+        inductance_q=reference.inductance_q * volts / amperes,
+        magnet_flux=reference.magnet_flux * volts,
+        current=reference.current * amperes,
+        inertia=reference.inertia * volts * amperes,
+        volts=reference.volts * volts,
+        current_range=reference.current_range * amperes,
+    )
+    pair = dict(zip(SCALES, map(float, scales), strict=True))
+    found = similarity.effects(SECTIONS, machine, pair, core.plant_schema(native))
+    larger = {
+        "inverter": {"switch_threshold": volts, "diode_threshold": volts}
+        | dict.fromkeys(("switch_resistance", "diode_resistance"), volts / amperes),
+        "link": {"source_resistance": volts / amperes, "capacitance": amperes / volts},
+        "sensor": dict.fromkeys(("offset_a", "offset_b", "offset_c", "ring_amplitude"), amperes),
+        "mechanics": {"cogging_torque": volts * amperes},
+    }
+    for section, keys in SECTIONS.items():
+        for key, value in keys.items():
+            factor = larger.get(section, {}).get(key, 1.0)
+            assert found[section][key] == (value * factor if factor != 1.0 else value), (section, key)
 
 
 def test_a_segment_of_the_polarity_test_is_as_long_as_the_drives():

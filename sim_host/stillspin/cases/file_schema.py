@@ -30,6 +30,7 @@ def plant(kind: str, entries: core.Schema, known: Mapping[str, Entry]) -> Json:
     keys = {
         "description": _TEXT,
         "commission": _SWITCH | {"description": "A campaign lets the drive measure itself first."},
+        **({"sized": _SWITCH | {"description": _SIZED}} if kind == "profile" else {}),
         **_sections(entries),
         "parameters": _parameters(known) | {"description": "Of the drive; they go before what follows from the rest."},
     }
@@ -73,6 +74,7 @@ def _one_or_more(item: Json) -> Json:
     return {"if": {"type": "array"}, "then": _list(item, 1), "else": item}
 
 
+_SIZED = "Volts, amperes and torques are those of motor A on its board; another has them in units of its own size."
 _TEXT: Json = {"type": "string"}
 _SWITCH: Json = {"type": "boolean"}
 _NAME: Json = {"type": "string", "pattern": "^[a-z0-9_]+$", "words": "lower case letters, digits and '_'"}

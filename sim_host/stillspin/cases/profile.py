@@ -59,6 +59,7 @@ class _File:
     plant: core.Plant
     parameters: dict[str, float]
     commission: bool
+    sized: bool
 
 
 def load(
@@ -81,9 +82,11 @@ def load(
     Raises:
         InputError: not found, not TOML, unknown entry, wrong type or out of range.
     """
-    known = core.at_scale(known, _scales(motor, name_or_path))
+    scales = _scales(motor, name_or_path)
+    known = core.at_scale(known, scales)
     machine = _read("motor", motor, schema, known)
     effects = _read("profile", name_or_path, schema, known)
+    added = similarity.effects(effects.plant, machine.plant, scales, schema) if effects.sized else effects.plant
     follows = nameplate.following(machine.plant, machine.parameters)
     sized = similarity.follow(machine.plant, {**follows, **machine.parameters}, known)
     follows |= sized
@@ -93,7 +96,7 @@ def load(
     return Profile(
         effects.name,
         effects.description,
-        merged(machine.plant, effects.plant),
+        merged(machine.plant, added),
         {**follows, **machine.parameters, **effects.parameters},
         effects.commission,
         machine.name,
@@ -133,7 +136,12 @@ def _read(kind: str, name: str, schema: core.Schema, known: Mapping[str, Entry])
     }
     plant = flux_table.stated(plant, path)
     parameters = {name: float(known[name].value(value)) for name, value in data.get("parameters", {}).items()}
-    return _File(path.stem, data.get("description", "").strip(), plant, parameters, data.get("commission", False))
+    description, commission, sized = (
+        data.get("description", ""),
+        data.get("commission", False),
+        data.get("sized", False),
+    )
+    return _File(path.stem, description.strip(), plant, parameters, commission, sized)
 
 
 def merged(*plants: Mapping[str, Mapping[str, Value]]) -> core.Plant:
