@@ -100,7 +100,7 @@ EXTRAS = pieces.Extras(
 def test_the_figure_is_the_error_over_the_bound():
     signals = held_at_twice_the_bound()
     piece = pieces.Piece(signals, signals["speed_ref"], 1000.0, 1000.0, EXTRAS)
-    assert metrics.KINDS["hold_bound_ratio"].function(piece) == pytest.approx(2.0)
+    assert metrics.FUNCTIONS["hold_bound_ratio"](piece) == pytest.approx(2.0)
 
 
 def test_it_is_drawn_below_the_error():

@@ -19,7 +19,7 @@ from stillspin.campaign.written import text as scenario_text
 from stillspin.cases import scenario_file
 from stillspin.commands import campaign
 from stillspin.drive import own
-from stillspin.runs import reproduction
+from stillspin.studies import reproduction
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
 

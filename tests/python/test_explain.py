@@ -15,10 +15,11 @@ from stillspin.measure.figures import Result
 from stillspin.options import by_mark
 from stillspin.report.explain_report import content
 from stillspin.report.explanation import Explanation
-from stillspin.runs import effects, explain, records
+from stillspin.runs import effects, records
 from stillspin.runs.assess import ScenarioResult
 from stillspin.runs.effects import ALONE, WITHOUT, Effect, Worlds
 from stillspin.runs.execute import Settings, prepare
+from stillspin.studies import explain
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from stillspin.cases.scenario import Figure, Goal, Run, Scenario
-from stillspin.measure import figures, flux_metrics, metrics
+from stillspin.measure import figures, flux_metrics
 from stillspin.measure.pieces import Extras, Piece
 
 TIME = np.arange(0.0, 4.0, 0.001)
@@ -88,9 +88,3 @@ def test_the_limit_of_the_root_is_above_any_flux_without_field_weakening():
     assert np.max(np.abs(argument)) < 1e-18
     assert flux_metrics.flux_limit_share(piece) == pytest.approx(100.0 * np.max(flux / limit))
     assert flux_metrics.flux_limit_share(piece) < 100.0
-
-
-def test_every_kind_has_a_definition():
-    for name in flux_metrics.KINDS:
-        assert metrics.KINDS[name].help.endswith(".") or metrics.KINDS[name].help
-        assert metrics.KINDS[name].unit

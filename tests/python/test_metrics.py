@@ -7,6 +7,7 @@ signal's change in that time, and a time is known to one sample.
 import numpy as np
 import pytest
 
+from stillspin.cases import vocabulary
 from stillspin.cases.scenario import Reached, Run
 from stillspin.measure import metrics, pieces
 
@@ -232,6 +233,7 @@ def test_a_step_on_the_windows_corner_starts_from_the_command_before_it():
 
 
 def test_every_kind_of_figure_has_a_unit_and_says_what_it_is():
-    for kind in metrics.KINDS.values():
-        assert kind.unit
-        assert kind.help.endswith(".")
+    assert metrics.FUNCTIONS.keys() == vocabulary.KINDS.keys()
+    for name, function in metrics.FUNCTIONS.items():
+        assert vocabulary.KINDS[name].unit
+        assert (function.__doc__ or "").splitlines()[0].endswith(".")

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from stillspin.cases import scenario_file
+from stillspin.cases import scenario_file, vocabulary
 from stillspin.cases.scenario import Plot
 from stillspin.report import panels, plots
 from stillspin.report.special_plots import SPECIAL
@@ -59,6 +59,10 @@ def test_travel_starts_near_the_true_angle_and_unwraps():
     run = scenario_file.load("A10").runs[0]
     assert line_true.compute(signals, run) == pytest.approx(np.degrees(turns - 3.0))
     assert line_used.compute(signals, run) == pytest.approx(np.degrees(turns - 2.9))
+
+
+def test_every_panel_that_a_file_may_name_can_be_drawn():
+    assert tuple(panels.PANELS) == vocabulary.PANELS
 
 
 @pytest.mark.parametrize("panel", panels.PANELS)

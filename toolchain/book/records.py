@@ -23,7 +23,7 @@ RUNS = (
     *DRIVE,
     *(f"sim_host/{name}" for name in ("bench", "chip", "devices", "plant", "profiles", "scenarios", "schemes")),
     *(f"sim_host/motors/{name}.toml" for name in ("A", "B", "B-SPM")),
-    *(f"sim_host/stillspin/{name}" for name in ("cases", "measure", "runs")),
+    *(f"sim_host/stillspin/{name}" for name in ("cases", "measure", "runs", "studies")),
     *(f"!sim_host/chip/{name}" for name in ("c28x", "code_cpu", "code_flash_library")),
 )
 # What a run of `stillspin` is made of beside these, by the record's name.

@@ -16,7 +16,7 @@ from checks import Finding, left
 # From the ground up; what is not named here lies below all of them and imports none.
 FLOORS = (
     *("link", "flash", "c28x", "cases", "catalogue", "board", "drive", "measure", "image", "runs", "hil", "report"),
-    *("campaign", "type_test", "tune", "commands", "cli", "__main__"),
+    *("studies", "campaign", "type_test", "tune", "commands", "cli", "__main__"),
 )
 LEFT = "toolchain/imports_left.txt"  # lines `folder: folders above it that it imports`
 

@@ -14,7 +14,7 @@ from stillspin.campaign.draw import Drawer, Unit
 from stillspin.campaign.results import Row
 from stillspin.report import output
 from stillspin.runs.commission import Result
-from stillspin.runs.reproduction import write_found
+from stillspin.studies.reproduction import write_found
 
 CASES = "cases.csv"
 _VERDICT = ("end", "words", "wrong_s", "off_s", "angle_error_deg")

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from stillspin import core, resources
+from stillspin.cases import vocabulary
 from stillspin.cases.scenario import COMMANDS, RATIO
 from stillspin.entry import Entry
 from stillspin.json_schema import DIALECT, Json
-from stillspin.measure import metrics
-from stillspin.report import panels
 
 KINDS = ("motor", "profile", "scenario")
 
@@ -168,12 +167,12 @@ def _figure() -> Json:
     ratio = _table({**common, "of": _row(_TEXT, _TEXT) | {"words": "the names of two figures"}}, "name", "of")
     several = {"if": {"type": "array", "items": {"type": "array"}}, "then": _list(_WINDOW, 1), "else": _WINDOW}
     measured = _table({**common, "window": several}, "name", "window")
-    kinds = {"enum": [*metrics.KINDS]}
-    stated = _by("kind", RATIO, {}, {"properties": {"kind": {"enum": [*metrics.KINDS, RATIO]}}})
+    kinds = {"enum": [*vocabulary.KINDS]}
+    stated = _by("kind", RATIO, {}, {"properties": {"kind": {"enum": [*vocabulary.KINDS, RATIO]}}})
     named = {"if": {"required": ["kind"]}, "then": stated, "else": {"properties": {"name": kinds}}}
     return {"type": "object", "allOf": [named], **_by("kind", RATIO, ratio, measured)}
 
 
 def _plot() -> Json:
     keys = {"title": _TEXT, "runs": _one_or_more(_TEXT), "window": _WINDOW}
-    return _table({**keys, "panels": _one_or_more({"enum": list(panels.PANELS)})}, "panels")
+    return _table({**keys, "panels": _one_or_more({"enum": [*vocabulary.PANELS]})}, "panels")

@@ -14,12 +14,11 @@ from pathlib import Path
 import numpy as np
 
 from stillspin import core, json_schema, resources, toml_table
-from stillspin.cases import file_schema
+from stillspin.cases import file_schema, vocabulary
 from stillspin.cases.scenario import RATIO, Figure, Goal, Plot, Reached, Run, Scenario, Window
 from stillspin.core import Command, Look
 from stillspin.errors import InputError, did_you_mean
 from stillspin.json_schema import Json
-from stillspin.measure import metrics
 
 
 class RelationError(InputError):
@@ -207,7 +206,7 @@ def _figure(stated: Json, runs: tuple[Run, ...], where: str) -> Figure:
     return Figure(
         name=stated["name"],
         kind=kind,
-        unit="" if ratio else metrics.KINDS[kind].unit,
+        unit="" if ratio else vocabulary.KINDS[kind].unit,
         runs=() if ratio else chosen,
         windows=() if ratio else _windows(stated, min(run.duration for run in runs if run.name in chosen), where),
         paper=None if paper is None else float(paper),

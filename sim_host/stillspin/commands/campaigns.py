@@ -41,8 +41,8 @@ from stillspin.report import page as report
 from stillspin.report.junit import JunitOption
 from stillspin.runs import drift as drifts
 from stillspin.runs.assess import ScenarioResult
-from stillspin.runs.reproduction import Options, carry_out
 from stillspin.runs.workers import Where
+from stillspin.studies.reproduction import Options, carry_out
 
 
 def on_motor(motor: str | None, scenario: Scenario) -> Scenario:

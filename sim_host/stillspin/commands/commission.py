@@ -20,7 +20,7 @@ from stillspin.report.progress import PhaseBar
 from stillspin.revision import revision
 from stillspin.runs import commission as commissioning
 from stillspin.runs import execute
-from stillspin.runs.reproduction import write_found
+from stillspin.studies.reproduction import write_found
 
 
 def commission(

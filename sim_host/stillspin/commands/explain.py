@@ -21,8 +21,8 @@ from stillspin.options import (
     processors,
 )
 from stillspin.report import explain_report, output, tables
-from stillspin.runs.explain import Options, carry_out
 from stillspin.runs.workers import Where
+from stillspin.studies.explain import Options, carry_out
 
 
 def explain(

@@ -22,7 +22,7 @@ from stillspin.options import CommissionOption, whole
 from stillspin.report import junit
 from stillspin.report.page import number
 from stillspin.runs.assess import ScenarioResult
-from stillspin.runs.reproduction import Options, carry_out
+from stillspin.studies.reproduction import Options, carry_out
 
 NAME = "round-trips"
 TRIPS = "trips.json"

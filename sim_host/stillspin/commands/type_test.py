@@ -22,7 +22,7 @@ from stillspin.options import CommissionOption
 from stillspin.report import junit, output, tables
 from stillspin.report.progress import Counter
 from stillspin.revision import revision
-from stillspin.runs.reproduction import write_found
+from stillspin.studies.reproduction import write_found
 from stillspin.type_test import carry_out, duties, findings
 from stillspin.type_test.carry_out import Row
 from stillspin.type_test.findings import Finding

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stillspin.cases.scenario import Figure, Reached, Run, Scenario
+from stillspin.cases.vocabulary import KINDS
 from stillspin.core import Signals
 from stillspin.counted import counted
 from stillspin.measure import metrics, pieces
@@ -93,7 +94,7 @@ def _of_figure(
     lost: Mapping[str, Signals],
     extras: Mapping[str, Extras],
 ) -> tuple[float | None, str]:
-    if not metrics.KINDS[figure.kind].of_lost or not any(name in lost for name in figure.runs):
+    if not KINDS[figure.kind].of_lost or not any(name in lost for name in figure.runs):
         return _largest(figure, scenario, recorded, extras)
     ends = [_last_corner(lost[name]) for name in figure.runs if name in lost]
     windows = tuple((first, min(last, *ends)) for first, last in figure.windows)
@@ -115,7 +116,7 @@ def _largest(
     missing = [name for name in figure.runs if name not in recorded]
     if missing:
         return None, f"run {', '.join(missing)} broke off"
-    function = metrics.KINDS[figure.kind].function
+    function = metrics.FUNCTIONS[figure.kind]
     values: list[float] = []
     for name in figure.runs:
         for window in figure.windows:

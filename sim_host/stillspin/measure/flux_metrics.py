@@ -7,7 +7,6 @@ of the high-speed estimator.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
 
 import numpy as np
 
@@ -117,19 +116,15 @@ def flux_limit_share(piece: Piece) -> float:
     return 100.0 * float(np.max(flux / limit))
 
 
-KINDS: dict[str, tuple[Callable[[Piece], float], str]] = {
-    "load_angle_error_peak": (load_angle_error_peak, "deg el"),
-    "beside_position_error_peak": (beside_position_error_peak, "deg el"),
-    "current_d_error_peak": (current_d_error_peak, "A"),
-    "current_q_error_peak": (current_q_error_peak, "A"),
-    "beside_current_d_error_peak": (beside_current_d_error_peak, "A"),
-    "beside_current_q_error_peak": (beside_current_q_error_peak, "A"),
-    "lowest_stable_speed": (lowest_stable_speed, "rpm"),
-    "stable_position_error_peak": (stable_position_error_peak, "deg el"),
-    "magnet_detection_error": (magnet_detection_error, "%"),
-    "flux_limit_share": (flux_limit_share, "%"),
-}
-"""Kinds of figures with their units."""
-
-OF_LOST = {"lowest_stable_speed", "stable_position_error_peak"}
-"""Those that say something of a run that was lost, up to the last change of its speed reference."""
+FUNCTIONS = (
+    load_angle_error_peak,
+    beside_position_error_peak,
+    current_d_error_peak,
+    current_q_error_peak,
+    beside_current_d_error_peak,
+    beside_current_q_error_peak,
+    lowest_stable_speed,
+    stable_position_error_peak,
+    magnet_detection_error,
+    flux_limit_share,
+)

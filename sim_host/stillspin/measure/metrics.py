@@ -12,7 +12,6 @@ as a settling time that the window does not see the end of, are infinite.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -250,56 +249,42 @@ def deviation_wrong_polarity(piece: Piece) -> float:
     return 100.0 * float(np.mean(found.deviation[clear] / kq * found.error[clear] < 0.0))
 
 
-@dataclass(frozen=True)
-class Kind:
-    """A kind of figure: function, unit and a definition in a line. `of_lost`: runs that are lost count too."""
-
-    function: Callable[[Piece], float]
-    unit: str
-    of_lost: bool = False
-
-    @property
-    def help(self) -> str:
-        """The first line of the function's description."""
-        return (self.function.__doc__ or "").splitlines()[0]
-
-
-KINDS: dict[str, Kind] = {
-    "position_error_peak": Kind(position_error_peak, "deg el"),
-    "position_error_rms": Kind(position_error_rms, "deg el"),
-    "speed_ripple": Kind(speed_ripple, "rpm"),
-    "speed_error": Kind(speed_error, "rpm"),
-    "mean_speed_error": Kind(mean_speed_error, "rpm"),
-    "speed_error_share": Kind(speed_error_share, "%"),
-    "overshoot": Kind(overshoot, "%"),
-    "settling_time": Kind(settling_time, "s"),
-    "recovery_time": Kind(recovery_time, "s"),
-    "dip": Kind(dip, "rpm"),
-    "position_drift": Kind(position_drift, "deg el"),
-    "position_offset": Kind(position_offset, "deg el"),
-    "tracking_error_rms": Kind(tracking_error_rms, "rpm"),
-    "tracking_error_peak": Kind(tracking_error_peak, "rpm"),
-    "radius_deviation": Kind(radius_deviation, "%"),
-    "current_peak": Kind(current_peak, "A"),
-    "link_peak": Kind(link_peak, "V"),
-    "hold_position_error_peak": Kind(hold_position_error_peak, "deg el"),
-    "hold_bound_ratio": Kind(hold_bound_ratio, "× bound"),
-    "thd": Kind(thd, "%"),
-    "ripple_rms": Kind(ripple_rms, "A"),
-    "ripple_peak_to_peak": Kind(ripple_peak_to_peak, "A"),
-    "ripple_subharmonic": Kind(ripple_subharmonic, "A"),
-    "ripple_audible": Kind(ripple_audible, "A"),
-    "ripple_copper_loss": Kind(ripple_copper_loss, "W"),
-    "ripple_torque": Kind(ripple_torque, "N m"),
-    "switching_frequency": Kind(switching_frequency, "kHz"),
-    "pattern_voltage_error": Kind(pattern_voltage_error, "ticks"),
-    "pattern_mismatch": Kind(pattern_mismatch, "%"),
-    "deviation_gain_error": Kind(deviation_gain_error, "%"),
-    "deviation_distortion": Kind(deviation_distortion, "%"),
-    "deviation_wrong_polarity": Kind(deviation_wrong_polarity, "%"),
-    **{
-        name: Kind(function, unit, name in flux_metrics.OF_LOST)
-        for name, (function, unit) in flux_metrics.KINDS.items()
-    },
+FUNCTIONS: dict[str, Callable[[Piece], float]] = {
+    function.__name__: function
+    for function in (
+        position_error_peak,
+        position_error_rms,
+        speed_ripple,
+        speed_error,
+        mean_speed_error,
+        speed_error_share,
+        overshoot,
+        settling_time,
+        recovery_time,
+        dip,
+        position_drift,
+        position_offset,
+        tracking_error_rms,
+        tracking_error_peak,
+        radius_deviation,
+        current_peak,
+        link_peak,
+        hold_position_error_peak,
+        hold_bound_ratio,
+        thd,
+        ripple_rms,
+        ripple_peak_to_peak,
+        ripple_subharmonic,
+        ripple_audible,
+        ripple_copper_loss,
+        ripple_torque,
+        switching_frequency,
+        pattern_voltage_error,
+        pattern_mismatch,
+        deviation_gain_error,
+        deviation_distortion,
+        deviation_wrong_polarity,
+        *flux_metrics.FUNCTIONS,
+    )
 }
-"""Every kind of figure that a scenario file can ask for; besides these there is `ratio` of two other figures."""
+"""What each kind of figure is (cases/vocabulary.py): of a piece of a run a number in its unit."""

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from stillspin.cases.scenario import Scenario
-from stillspin.extras import need
+from stillspin.cases.scenario import Plot, Scenario
+from stillspin.core import Signals
 from stillspin.measure import figures, pieces
 from stillspin.runs import records
 from stillspin.runs.execute import Outcome
+
+Draw = Callable[[Plot, Scenario, Mapping[str, Signals], Mapping[str, pieces.Extras]], str]
+"""Draws a plot of a scenario from its runs' signals, and what else is known of them, as SVG text."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,7 @@ class ScenarioResult:
 
 
 def assess(
-    scenario: Scenario, outcomes: Sequence[Outcome], directory: Path, profile: str, draw: bool
+    scenario: Scenario, outcomes: Sequence[Outcome], directory: Path, profile: str, draw: Draw | None
 ) -> ScenarioResult:
     """Figures and drawings of a scenario. Runs that broke off are drawn as far as they got, but not measured.
 
@@ -51,7 +54,7 @@ def assess(
         outcomes: of its runs, in their order.
         directory: where the records are.
         profile: name, for the goals.
-        draw: whether to draw.
+        draw: what draws, None for no drawings.
     """
     read = {outcome.run: records.read(directory / outcome.file) for outcome in outcomes if outcome.file}
     recorded = {name: record.signals for name, record in read.items()}
@@ -65,10 +68,6 @@ def assess(
     counting = {outcome.run: recorded[outcome.run] for outcome in outcomes if outcome.file and not outcome.broken}
     lost = {name: signals for name, signals in recorded.items() if name not in counting}
     measured = figures.evaluate(scenario, counting, profile, extras, lost)
-    drawings = []
-    if draw and recorded and scenario.plots:
-        need("matplotlib")
-        from stillspin.report import plots  # noqa: PLC0415 - matplotlib takes a second to load, and not all need it
-
-        drawings = [Drawing(plot.title, plots.draw(plot, scenario, recorded, extras)) for plot in scenario.plots]
+    plots = scenario.plots if draw and recorded else ()
+    drawings = [Drawing(plot.title, draw(plot, scenario, recorded, extras)) for plot in plots if draw]
     return ScenarioResult(scenario, list(outcomes), measured, drawings)

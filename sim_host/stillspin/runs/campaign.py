@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from stillspin.cases.scenario import Scenario
-from stillspin.runs.assess import ScenarioResult, assess
+from stillspin.runs.assess import Draw, ScenarioResult, assess
 from stillspin.runs.execute import Job, Outcome, execute
 from stillspin.runs.reporting import report
 from stillspin.runs.workers import Task, Where, workers
@@ -25,14 +25,14 @@ class Plan:
         scenarios: in the order of the report; jobs: all their runs.
         directory: existing, for the records.
         profile: name, for the goals.
-        draw: whether to draw.
+        draw: what draws, None for no drawings; a worker must find it by its name.
     """
 
     scenarios: Sequence[Scenario]
     jobs: Sequence[Job]
     directory: Path
     profile: str
-    draw: bool
+    draw: Draw | None = None
 
 
 class Watcher:

@@ -10,11 +10,13 @@ from rich.console import Console
 
 from stillspin import __version__, core
 from stillspin.cases import profile
-from stillspin.cases.scenario import Scenario
-from stillspin.core import NativeCore
+from stillspin.cases.scenario import Plot, Scenario
+from stillspin.core import NativeCore, Signals
 from stillspin.drive.own import firmware
 from stillspin.errors import InputError
+from stillspin.extras import need
 from stillspin.image.opened import Image
+from stillspin.measure import pieces
 from stillspin.report import output
 from stillspin.report import page as report
 from stillspin.report.progress import Bar, PhaseBar
@@ -103,11 +105,18 @@ def carry_out(scenarios: Sequence[Scenario], options: Options) -> Reproduction:
         jobs = [job for scenario, each in todo for job in execute.prepare(scenario, each, native)]
         runs = directory / output.RUNS
         name = own[motors[0]].profile.name
-        plan = campaign.Plan([scenario for scenario, _ in todo], jobs, runs, name, options.draw)
+        plan = campaign.Plan([scenario for scenario, _ in todo], jobs, runs, name, _draw if options.draw else None)
         with Bar(screen, options.told) as bar:
             results, beside = variant.separate(campaign.run_all(plan, options.where, bar), variants)
         report.write(directory, results, list(settings.values()), beside)
     return Reproduction(results, beside, refused)
+
+
+def _draw(plot: Plot, scenario: Scenario, recorded: Mapping[str, Signals], extras: Mapping[str, pieces.Extras]) -> str:
+    need("matplotlib")
+    from stillspin.report import plots  # noqa: PLC0415 - matplotlib takes a second to load, and not all need it
+
+    return plots.draw(plot, scenario, recorded, extras)
 
 
 def _own(native: NativeCore, options: Options, motor: str) -> Settings:

@@ -75,7 +75,7 @@ def carry_out(scenario: Scenario, options: Options) -> Explanation:
         todo = [(each.scenario(scenario), each.settings) for each in cases]
         jobs = [job for varied, settings in todo for job in execute.prepare(varied, settings, native)]
         runs = directory / output.RUNS
-        plan = campaign.Plan([varied for varied, _ in todo], jobs, runs, worlds.own.name, draw=False)
+        plan = campaign.Plan([varied for varied, _ in todo], jobs, runs, worlds.own.name)
         with Bar(Console(stderr=True)) as bar:
             results = campaign.run_all(plan, options.where, bar)
         found = _explanation(scenario, cases, results, options)
