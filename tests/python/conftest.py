@@ -43,6 +43,18 @@ def core(monkeypatch):
 
 
 @pytest.fixture
+def file(tmp_path):
+    """Writes octets as an image file, and says where."""
+
+    def write(octets):
+        path = tmp_path / "program.out"
+        path.write_bytes(octets)
+        return path
+
+    return write
+
+
+@pytest.fixture
 def power():
     """Switches on a virtual board in this process, which has room for one at a time; off behind the test."""
     opened = []

@@ -16,16 +16,6 @@ from stillspin.flash.program import Block
 BLOCKS = [Block(0x3F4000, (0x7700, 0x1234, 0x0006)), Block(0x9000, (1, 2))]
 
 
-@pytest.fixture
-def file(tmp_path):
-    def write(data):
-        path = tmp_path / "program.out"
-        path.write_bytes(data)
-        return path
-
-    return write
-
-
 def test_words_are_where_they_are_loaded(file):
     there = read_program(file(elf(BLOCKS, load={1: 0x3F5000 - 0x9000})))
     assert there.blocks == (BLOCKS[0], Block(0x3F5000, (1, 2)))

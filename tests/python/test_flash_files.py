@@ -31,16 +31,6 @@ FORMATS = {
 }
 
 
-@pytest.fixture
-def file(tmp_path):
-    def write(content):
-        path = tmp_path / "image"
-        path.write_bytes(content)
-        return path
-
-    return write
-
-
 @pytest.mark.parametrize("name", FORMATS)
 def test_every_format_gives_the_same_image(file, name):
     image = drive_image(file(FORMATS[name]))
@@ -105,7 +95,8 @@ def test_build_stamps_the_image(file):
         return subprocess.run([sys.executable, STAMP, path], capture_output=True, text=True, check=False)
 
     first = build()
-    assert (first.returncode, first.stdout[:20]) == (0, "image: CRC-32 0x" + first.stdout[16:20])
+    assert first.returncode == 0
+    assert first.stdout.startswith("program.out: CRC-32 0x")
     assert drive_image(path).summed
     path.write_bytes(make.coff([b for b in IMAGE if b.address != make.IDENTITY]))
     refused = build()

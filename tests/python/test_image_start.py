@@ -39,16 +39,6 @@ def ram_model(values, *more):
     return bytes(data)
 
 
-@pytest.fixture
-def file(tmp_path):
-    def write(data):
-        path = tmp_path / "program.out"
-        path.write_bytes(data)
-        return path
-
-    return write
-
-
 def words_of(path, seconds, address, count):
     image = opened.read(path)
     board = opened.power_on(image, "bench", "A", 1)
