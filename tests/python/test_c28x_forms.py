@@ -157,6 +157,8 @@ def test_every_form_is_executed_and_changes_the_status_bits_that_the_table_says(
         ("LCR 0x3f8000", [0x767F, 0x8000]),
         ("CLRC AMODE", [0x5616]),
         ("SETC INTM,DBGM", [0x3B30]),
+        ("CLRC SXM|OVM", [0x2903]),
+        ("ADD ACC,@0x3A<<#2", [0x5604, 0x023A]),
         ("SPM -6", [0xFF6F]),
         ("NOP", [0x7700]),
         # Below zero, without @, and RTS's own name of a return, as TI's sources have them.
@@ -193,6 +195,9 @@ f5a9 0882  MOV AL,*(0:0x0882)        | f4a9 7077  MOV *(0:0x7077),AL       | f54
 0da7       ADDU ACC,AR7              | 88c4       MOVZ AR6,*+XAR4[0]       | 96dc       MOV *+XAR4[3],AL
 92be       MOV AL,*--SP              | caa8       OR AL,@AH                | cec4       AND AL,*+XAR4[0]
 402f       TBIT @0x2f,#0x0           | 900f       ANDB AL,#0xf             | 1ca9 ffff  XOR AL,#0xffff
+5603 013a  MOV ACC,@0x3a << 1        | cc21 0010  AND AL,@0x21,#0x10       | 56b1 c822  MOVB @0x22,#0xc8,EQ
+1821 fc3f  AND @0x21,#0xfc3f         | 7ec4       MOV *+XAR4[0],AR6        | c446       MOVL XAR6,*-SP[6]
+9cff       ADDB AL,#-1               | f447 7077  MOV *(0:0x7077),*-SP[7]  | ec80       SBF -128,EQ
 """
 """What cl2000 6.1 and the libraries of TI come to, by TI's own disassembler. Its branches say how far."""
 

@@ -99,6 +99,7 @@ def test_a_program_without_a_boot_entry_gets_a_branch():
     assert made == [(0x3F4000, [0x7700]), (0x3F7FF6, [0x007F, 0x4000])]
     with pytest.raises(InputError, match="no entry point"):
         blocks_of(Program((Block(0x3F4000, (0x7700,)),)), "x")
+    assert blocks_of(Program((Block(0, (0x6F00,)),)), "x")[-1] == (0x3F7FF6, [0x0040, 0x0000]), "in RAM"
     with pytest.raises(InputError, match="0x3F5000 is in none of its sections"):
         blocks_of(Program((Block(0x3F4000, (0x7700,)),), 0x3F5000), "x")
 

@@ -192,13 +192,24 @@ def test_coff_has_them_packed_or_an_octet_to_a_word(tmp_path, control, wide):
     assert "sample" in there.functions.values()
 
 
-def with_section(data, name, octets):
+def test_coff_whose_section_counts_octets_has_nothing_of_what_is_behind_it(tmp_path, control):
+    section = linked.debug_lines(control)
+    behind = unit(at(0x3F4002) + b"\3\x09\1\2\x04" + END)  # as another section's octets might be read
+    data = coff([Block(first, tuple(words)) for first, words in linked.runs(control.words)])
+    file = tmp_path / "control.out"
+    file.write_bytes(with_section(data, ".debug_line", section + behind + b"\xff" * len(section), size=len(section)))
+    lines = names.read(file).lines
+    assert all(lines.at(address) == Source(*line) for address, line in control.lines.items())
+
+
+def with_section(data, name, octets, size=None):
     """The COFF file with one section more, whose content and name are behind all, and its head behind the others."""
     _, count, _, table, symbols, optional, _, _ = struct.unpack_from("<HHIIIHHH", data)
     heads = 22 + optional + 48 * count
     moved = 48
     raw = len(data) + moved
-    head = struct.pack("<8sIIIIIIIIIHH", struct.pack("<II", 0, 0), 0, 0, len(octets) // 2, raw, 0, 0, 0, 0, 0x10, 0, 0)
+    size = size or len(octets) // 2
+    head = struct.pack("<8sIIIIIIIIIHH", struct.pack("<II", 0, 0), 0, 0, size, raw, 0, 0, 0, 0, 0x10, 0, 0)
     out = bytearray(data[:heads] + head + data[heads:])
     struct.pack_into("<H", out, 2, count + 1)
     struct.pack_into("<I", out, 8, table + moved)

@@ -46,6 +46,8 @@ def _check_place(block: Block, name: str) -> None:
 def blocks_of(program: Program, name: str) -> Blocks:
     """The words of a program. One that has nothing at the flash's entry gets a branch there, to its own entry.
 
+    Where the file tells none (Intel hex), a program that has words at the boot ROM's entry in RAM begins there.
+
     Raises:
         InputError: nothing says where it begins, or it has words that the virtual board has no memory for.
     """
@@ -53,13 +55,15 @@ def blocks_of(program: Program, name: str) -> Blocks:
         _check_place(block, name)
     blocks: Blocks = [(block.address, list(block.words)) for block in program.blocks]
     if program.word(layout.BOOT_ENTRY) is None:
-        if program.entry is None:
+        entry = layout.RAM_ENTRY if program.entry is None else program.entry
+        there = program.word(entry) is not None
+        if program.entry is None and not there:
             raise InputError(
                 f"{name}: has no code at the flash's entry 0x{layout.BOOT_ENTRY:06X}, to which the boot ROM jumps, "
-                "and no entry point of its own"
+                "none at that in RAM, 0x000000, and no entry point of its own"
             )
-        if program.word(program.entry) is None:
-            raise InputError(f"{name}: its entry point 0x{program.entry:06X} is in none of its sections")
-        branch = [_LONG_BRANCH | program.entry >> 16, program.entry & 0xFFFF]
+        if not there:
+            raise InputError(f"{name}: its entry point 0x{entry:06X} is in none of its sections")
+        branch = [_LONG_BRANCH | entry >> 16, entry & 0xFFFF]
         blocks.append((layout.BOOT_ENTRY, branch))
     return blocks

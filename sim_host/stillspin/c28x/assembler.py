@@ -46,7 +46,7 @@ def _spellings() -> dict[str, list[_Spelling]]:
 def _modes(text: str, evaluate: Evaluate) -> int:
     if text.startswith("#"):
         return within(evaluate(text[1:]), 0, 0xFF)
-    names = text.split(",")
+    names = re.split("[,|]", text)
     if not set(names) <= set(MODES):
         raise ValueError(f"'{text}' are no status bits")
     return sum(1 << MODES.index(name) for name in names)

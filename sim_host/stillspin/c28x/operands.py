@@ -69,7 +69,7 @@ def location_code(text: str, bits: int, evaluate: Evaluate) -> int:
         return 0x40 + within(evaluate(match[1]), 0, 63)
     if match := re.fullmatch(r"\*\+XAR([0-7])\[(.+)\]", text):
         return 0xC0 + 8 * within(evaluate(match[2]), 0, 7) + int(match[1])
-    if re.fullmatch(r"@[^@*#]+", text) and text not in (*_WORDS, *_LONGS):
+    if re.fullmatch(r"@[^@*#<]+", text) and text not in (*_WORDS, *_LONGS):
         return evaluate(text[1:]) & 0x3F  # the page is in DP
     raise ValueError(f"'{text}' is no location of {bits} bits")
 

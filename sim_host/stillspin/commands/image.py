@@ -48,6 +48,11 @@ def _within(extent: Extent) -> str:
     return first if first == last else f"{first} to {last}"
 
 
+def _taken(section: Section) -> Iterator[Extent]:
+    """What no other may have: a section without content in flash or registers (CsmPwlFile) only names what is there."""
+    return (extent for extent in section.extents() if extent.loaded or memories.is_ram(extent.address))
+
+
 def _say(there: Sequence[Section]) -> int:
     """Sections and how full the memories are; gives how many words are in none."""
     print(f"{'section':<20}{'words':>7}  {'loaded to':<10} {'runs at':<9} memory")
@@ -57,7 +62,7 @@ def _say(there: Sequence[Section]) -> int:
     filled = Filled(extent for section in there for extent in section.extents())
     for name, used, size in filled.rows():
         print(f"{name:<9} {used:>6} of {counted(size, 'word')}")
-    for one, other, first, end in memories.shared((part.name, part.extents()) for part in there):
+    for one, other, first, end in memories.shared((part.name, _taken(part)) for part in there):
         print(f"{one} and {other} share 0x{first:06X} to 0x{end - 1:06X}: an overlay, or a mistake of the command file")
     if filled.outside:
         print(f"{counted(filled.outside, 'word')} in no memory of the chip")

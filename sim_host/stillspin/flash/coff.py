@@ -5,6 +5,7 @@ Source: TI's description of its COFF (SPRAAO8), from memory; sizes count words, 
 
 from __future__ import annotations
 
+import re
 import struct
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -27,8 +28,11 @@ _OPTIONAL = struct.Struct("<HHIIIIII")
 _SECTION = struct.Struct("<8sIIIIIIIIIHH")
 _SYMBOL = struct.Struct("<8sIhHBB")
 _LINE_SIZE = 6
-_NAMED = {2, 3, 6}
+_EXTERNAL = 2
+_NAMED = {_EXTERNAL, 3, 6}
 """Storage classes of what has an address: external, static, label."""
+_WITHIN = re.compile(r"[.$].*|DW\$.*|C\$.*|L\d+")
+"""Names of sections, and of places within a function, which assemblers keep where they are told to (cl2000 -as)."""
 BEGIN_OR_END = 101
 """Storage class of .bf and .ef, about the lines of a function."""
 _ABSOLUTE = -1
@@ -132,15 +136,16 @@ def functions(data: bytes) -> dict[int, str]:
     """
     code = {number for number, head in enumerate(_heads(data), 1) if head.kind & _TEXT}
     found: dict[int, str] = {}
-    for name, value, section in _symbols(data):
-        if section in code and not name.startswith((".", "$")):
+    for name, value, section, kind in _symbols(data):
+        is_place = kind != _EXTERNAL and _WITHIN.fullmatch(name)
+        if section in code and not is_place and not name.startswith((".", "$")):
             found.setdefault(value, name)
     return found
 
 
 def addresses(data: bytes) -> dict[str, int]:
     """Addresses of everything that has a name, code and data; absolute values too."""
-    return {name: value for name, value, section in _symbols(data) if section > 0 or section == _ABSOLUTE}
+    return {name: value for name, value, section, _ in _symbols(data) if section > 0 or section == _ABSOLUTE}
 
 
 class Symbol(NamedTuple):
@@ -159,11 +164,11 @@ class Symbol(NamedTuple):
         return self.kind in _NAMED
 
 
-def _symbols(data: bytes) -> Iterator[tuple[str, int, int]]:
-    """Name, value and section of what has an address."""
+def _symbols(data: bytes) -> Iterator[tuple[str, int, int, int]]:
+    """Name, value, section and storage class of what has an address."""
     for _, entry, _ in raw_symbols(data):
         if entry.has_address and entry.name:
-            yield entry.name, entry.value, entry.section
+            yield entry.name, entry.value, entry.section, entry.kind
 
 
 def lost_symbols(data: bytes) -> int:

@@ -79,6 +79,14 @@ def read(section: bytes, strings: Strings = NO_STRINGS) -> Lines:
     return Lines(rows)
 
 
+def is_whole(section: bytes) -> bool:
+    """Whether units follow each other up to its end, but for what fills words."""
+    at = 0
+    while at + 4 <= len(section):
+        at += 4 + int.from_bytes(section[at : at + 4], "little")
+    return at <= len(section)
+
+
 def _units(section: bytes) -> Iterator[bytes]:
     at = 0
     while at + 4 <= len(section):

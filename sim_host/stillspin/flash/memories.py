@@ -53,6 +53,12 @@ def at(address: int) -> Memory | None:
     return None
 
 
+def is_ram(address: int) -> bool:
+    """Whether the program can write there, and no register is."""
+    memory = at(address)
+    return memory is not None and memory.group == "RAM"
+
+
 def name(address: int) -> str:
     """For people."""
     memory = at(address)

@@ -104,9 +104,9 @@ def read(file: Path) -> Names:
 
 
 def _lines(data: bytes, section: Callable[[bytes, str], Iterator[bytes]]) -> Lines:
-    """Those of DWARF. All sections of a file have their octets in words in the same way."""
-    parts = (section(data, name) for name in (_LINES, _LINE_STRINGS, _STRINGS))
-    for program, of_lines, of_all in zip_longest(*parts, fillvalue=b""):
+    """Those of DWARF. All sections of a file have their octets in words in the same way, which is to be seen."""
+    ways = list(zip_longest(*(section(data, name) for name in (_LINES, _LINE_STRINGS, _STRINGS)), fillvalue=b""))
+    for program, of_lines, of_all in sorted(ways, key=lambda way: not debug_lines.is_whole(way[0])):
         if lines := debug_lines.read(program, Strings(of_lines, of_all)):
             return lines
     return Lines([])

@@ -43,7 +43,7 @@ def _in_ram(file: Path, program: Program) -> list[str]:
     """Of a program that begins in the flash, what it has loaded into RAM: of it nothing is there after power-on."""
     if program.word(layout.BOOT_ENTRY) is None:
         return []
-    lost = [part for part in sections.read(file, program) if part.load is not None and _is_ram(part.load)]
+    lost = [part for part in sections.read(file, program) if part.load is not None and memories.is_ram(part.load)]
     if not lost:
         return []
     words = counted(sum(part.words for part in lost), "word")
@@ -52,8 +52,3 @@ def _in_ram(file: Path, program: Program) -> list[str]:
         "that starts from its flash they are not there: give them a load address in the flash and copy them (.data: "
         "link with --rom_model)"
     ]
-
-
-def _is_ram(address: int) -> bool:
-    memory = memories.at(address)
-    return memory is not None and memory.group == "RAM"

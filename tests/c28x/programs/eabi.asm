@@ -34,12 +34,7 @@ auto_init:
         SB      more,UNC
 record: MOVL    XAR4,*XAR1++
         MOVL    XAR5,*XAR1++
-        MOVU    ACC,*XAR4++
-        LSL     ACC,#1
-        MOVL    XAR7,#HANDLERS
-        ADDL    @XAR7,ACC
-        MOVL    XAR7,*XAR7
-        LCR     *XAR7
+        LCR     unpack
 more:   MOVL    ACC,@XAR1
         CMPL    ACC,@XAR2
         SBF     record,NEQ
@@ -55,6 +50,13 @@ constructed:  MOVL    ACC,@XAR1
         POP     XAR2
         POP     XAR1
         LRETR
+
+unpack: MOVU    ACC,*XAR4++
+        LSL     ACC,#1
+        MOVL    XAR7,#HANDLERS
+        ADDL    @XAR7,ACC
+        MOVL    XAR7,*XAR7
+        LB      *XAR7
 
 ; Of each: XAR4 the data behind the handler's number, XAR5 where it runs.
 zero_init:                      ; an even address, then so many words
@@ -105,11 +107,73 @@ fill:   MOV     *XAR5++,AR7
         SB      word,UNC
 ended:  LRETR
 
+; Sixteen marks, the lowest first: 1 is a word as it is, 0 a word with a distance back (12 bits, and one more) and a
+; length (4 bits, and 2 more; the largest with another word to be added). The largest distance ends all.
+lzss:   MOVZ    AR6,*XAR4++
+        MOVB    XAR7,#15
+mark:   TBIT    @AR6,#0
+        SB      back,NTC
+        MOV     AL,*XAR4++
+        MOV     *XAR5++,AL
+        SB      shifted,UNC
+back:   MOV     T,*XAR4++
+        MOV     AL,@T
+        ANDB    AL,#15
+        ADDB    AL,#1
+        CMPB    AL,#16
+        SBF     length,NEQ
+        ADD     AL,*XAR4++
+length: MOVZ    AR0,@AL
+        MOV     AL,@T
+        LSR     AL,#4
+        CMP     @AL,#0x0FFF
+        SBF     ended,EQ
+        ADDB    AL,#1
+        MOVZ    AR3,@AL
+        MOVL    ACC,@XAR5
+        SUBL    ACC,@XAR3
+        MOVL    XAR3,@ACC
+behind: MOV     AL,*XAR3++
+        MOV     *XAR5++,AL
+        BANZ    behind,AR0--
+shifted: MOV    AL,@AR6
+        LSR     AL,#1
+        MOVZ    AR6,@AL
+        BANZ    mark,AR7--
+        SB      lzss,UNC
+
+; A table of what is to be copied, in XAR4: the words of a record and how many there are, then of each where it is loaded,
+; where it runs, and its words, or 0 where a handler unpacks it.
+copy_in:
+        PUSH    XAR1
+        PUSH    XAR2
+        PUSH    XAR3
+        MOVL    XAR1,@XAR4
+        ADDB    XAR1,#1
+        MOVZ    AR2,*XAR1++
+        SB      copied,UNC
+copy:   MOVL    XAR4,*XAR1++
+        MOVL    XAR5,*XAR1++
+        MOVL    XAR6,*XAR1++
+        MOVL    ACC,@XAR6
+        SBF     packed,EQ
+        LCR     left
+        SB      copied,UNC
+packed: LCR     unpack
+copied: BANZ    copy,AR2--
+        POP     XAR3
+        POP     XAR2
+        POP     XAR1
+        LRETR
+
 construct:
         MOVW    DP,#BUILT>>6
         INC     @BUILT
         LRETR
 
-main:   MOVW    DP,#DONE>>6
-        MOV     @DONE,#1
+main:   MOVL    XAR4,#COPIES
+        LCR     copy_in
+        LCR     in_ram
+        MOVW    DP,#DONE>>6
+        MOV     @DONE,AL
         LRETR
