@@ -31,7 +31,8 @@ import compose
 import planted
 from proof import kept
 from proof.defects import DEFECTS
-from proof.parts import LONGEST, PARTS, PROVED, SHOWN_ELSEWHERE, Part
+from proof.part import Part
+from proof.parts import LONGEST, PARTS, PROVED, SHOWN_ELSEWHERE
 from proof.shown import Shown
 
 ROOT = Path(__file__).resolve().parent.parent

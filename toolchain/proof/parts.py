@@ -1,31 +1,16 @@
 """The parts of the drive's C that Frama-C reads together: files, options, and what is taken for granted in them."""
 
-import re
-from dataclasses import dataclass, replace
-from pathlib import Path
+from proof.part import LINK_RANGES, QMATH, RANGES, SLICES, eva, of_link, of_qmath, with_contract, wp
 
-RANGES, CONTRACTS = "tests/prove/qmath_ranges.h", "tests/prove/qmath_contracts.h"
+CONTRACTS = "tests/prove/qmath_contracts.h"
 SHIFT_RANGES, BITS, FLOOR = "tests/prove/shift_ranges.h", "tests/prove/bits.h", "tests/prove/floor.h"
 OVER, LEFT_SHIFT, REST = (f"tests/prove/{name}.h" for name in ("over_contract", "left_shift", "rest"))
-LAYOUT_RANGES, LINK_RANGES = "tests/prove/svpwm_ranges.h", "tests/prove/link_ranges.h"
+LAYOUT_RANGES = "tests/prove/svpwm_ranges.h"
 ROTATION_RANGES, DROP_RANGES = "tests/prove/rotation_ranges.h", "tests/prove/drop_ranges.h"
 CONTROL_RANGES, MODULATOR_RANGES = "tests/prove/control_ranges.h", "tests/prove/modulator_ranges.h"
 ESTIMATORS_RANGES, START_RANGES = "tests/prove/estimators_ranges.h", "tests/prove/start_ranges.h"
 LOOK_RANGES, RESULTS_RANGES = "tests/prove/look_ranges.h", "tests/prove/results_ranges.h"
 FLOORS = (CONTROL_RANGES, MODULATOR_RANGES, ESTIMATORS_RANGES, START_RANGES)
-
-
-@dataclass(frozen=True)
-class Part:
-    """What is read together."""
-
-    name: str
-    sources: tuple[str, ...]  # the driver, patterns of the drive's files
-    flags: tuple[str, ...]
-    headers: tuple[str, ...] = (RANGES,)  # with what functions promise: shown where their code is read
-    given: str = ""  # functions of which the contract is taken, not the code
-    proved: tuple[str, ...] = ()  # functions whose contract WP proves, where EVA reads nothing
-    related: tuple[str, ...] = ()  # functions whose calls another part proves: their numbers belong together
 
 
 # Read with any argument by itself; what calls it is read with its contract (qmath_ranges.h and the others).
@@ -59,7 +44,6 @@ INLINED = "svpwm_fall_of,svpwm_put_order,put_nested_order,put_centred"
 # shows that of q_sat_bits slice by slice; at q_mix and q_mix_sat the prover stops, and tests/qmath tries every edge.
 SHOWN_ELSEWHERE = ("q_sat_bits", "q_mix", "q_mix_sat")
 
-QMATH = "hal/qmath/*.c"
 SOURCES_TABLE = "made/position_sources.c"  # of what the build makes (toolchain/compose.py)
 SVPWM = ("tests/prove/svpwm.c", "svpwm/*.c", QMATH)
 CONTROL = ("control/*.c", QMATH)
@@ -155,17 +139,6 @@ INTERRUPT = (
 )
 
 
-def with_contract(*headers: str) -> str:
-    """The functions that headers of tests/prove/ have contracts of."""
-    root = Path(__file__).resolve().parents[2]
-    texts = [(root / header).read_text(encoding="utf-8") for header in headers]
-    return ",".join(name for text in texts for name in re.findall(r"\*/\n[\w ]+?[ *](\w+)\(", text))
-
-
-SLICES = (
-    *("-eva-slevel", "100", "-eva-auto-loop-unroll", "600"),
-    *("-eva-split-return-function", "q_clz32:full"),
-)
 READER = ("-eva-auto-loop-unroll", "12", "-eva-slevel", "20", "-eva-split-return", "auto")
 # As many iterations of a loop, each by itself, and as many ways into a function kept apart.
 APART = (
@@ -182,40 +155,6 @@ NAMES = (
     *("-eva-slevel-function", "is_one_edit_away:60"),
 )
 ROUNDS = ("-eva-auto-loop-unroll", "40", "-eva-slevel", "20", "-eva-split-return", "full")
-
-
-def eva(
-    name: str,
-    sources: tuple[str, ...],
-    flags: tuple[str, ...] = (),
-    given: str = "",
-    *,
-    headers: tuple[str, ...] = (RANGES,),
-    precision: str = "0",
-) -> Part:
-    """What EVA reads from the driver's function `prove_NAME` on."""
-    begin = ("-main", f"prove_{name}", "-eva", "-eva-no-print", "-eva-precision", precision)
-    return Part(name, sources, (*begin, *flags), headers, given)
-
-
-def wp(
-    name: str, sources: tuple[str, ...], flags: tuple[str, ...], proved: tuple[str, ...], headers: tuple[str, ...]
-) -> Part:
-    """Functions whose contracts WP proves, and that nothing in them goes wrong."""
-    return Part(name, sources, ("-wp", "-wp-rte", "-wp-prover", "z3", *flags), headers, proved=proved)
-
-
-def of_qmath(name: str, flags: tuple[str, ...] = SLICES, given: str = "") -> Part:
-    """The arithmetic itself."""
-    return eva(name, ("tests/prove/qmath.c", QMATH), flags, given, precision="1")
-
-
-def of_link(
-    name: str, sources: tuple[str, ...], flags: tuple[str, ...], *given: str, related: tuple[str, ...] = ()
-) -> Part:
-    """What has to do with texts and records."""
-    part = eva(name, sources, flags, ",".join(given), headers=(LINK_RANGES,))
-    return replace(part, related=related)
 
 
 PARTS = (
