@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -23,7 +24,7 @@ from screen import terminal
 from stillspin import csv_table, mdf
 from stillspin.commands import braille, capture_file
 from stillspin.commands.completion import Words
-from stillspin.commands.transcript import Transcript
+from stillspin.commands.transcript import LINE, Transcript
 from stillspin.drive import Capture, Trigger
 from stillspin.drive.requester import wait_until
 from stillspin.errors import InputError
@@ -361,6 +362,19 @@ def test_a_transcript_is_without_echo_prompt_and_escapes():
     assert transcript.feed(b"gt\b \bet y\r\nfault: over-") == ["get y"]
     assert transcript.feed(b"current\r\n") == ["fault: over-current"]
     assert transcript.feed(b"> \r\n! fault: asked by nobody\r\n> ") == ["! fault: asked by nobody"]
+
+
+def test_a_line_that_is_too_long_is_known_by_what_the_console_shows_of_it():
+    """It echoes as much as it takes, and a bell for each of the others."""
+    line = "get " + 30 * "speed "
+    transcript = Transcript()
+    transcript.expect(line)
+    assert transcript.feed(line[:LINE].encode() + b"\a\a\r\na line has at most 80 characters: nothing done\r\n> ") == [
+        "a line has at most 80 characters: nothing done"
+    ]
+    assert transcript.answered
+    header = (Path(__file__).resolve().parents[2] / "firmware/console/editor.h").read_text(encoding="utf-8")
+    assert f"#define EDITOR_LINE {LINE}u" in header
 
 
 def completions(table, text):

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 
 PROMPT = "> "
+LINE = 80
+"""Characters of a line that the console takes; it shows none of the others, and carries out no such line."""
 _ESCAPE = re.compile(r"\x1b(?:\[[0-9;?]*[A-Za-z]|[^\[])")
 
 
@@ -19,8 +21,8 @@ class Transcript:
         self._expected: str | None = None
 
     def expect(self, line: str) -> None:
-        """The drive will echo this."""
-        self._expected = line
+        """The drive will echo this, as far as it takes a line."""
+        self._expected = line[:LINE].rstrip()
         self.answered = False
 
     def feed(self, octets: bytes) -> list[str]:
