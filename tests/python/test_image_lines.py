@@ -177,7 +177,7 @@ def test_lines_add_up():
 
 @pytest.mark.parametrize("wide", [False, True])
 def test_coff_has_them_packed_or_an_octet_to_a_word(tmp_path, control, wide):
-    """Read as it lies: nobody here has a file of cl2000."""
+    """Sizes in words are read as well."""
     section = linked.debug_lines(control)
     section += bytes(len(section) % 2)
     octets = b"".join(bytes((octet, 0)) for octet in section) if wide else section
@@ -192,7 +192,8 @@ def test_coff_has_them_packed_or_an_octet_to_a_word(tmp_path, control, wide):
     assert "sample" in there.functions.values()
 
 
-def test_coff_whose_section_counts_octets_has_nothing_of_what_is_behind_it(tmp_path, control):
+def test_a_section_of_coff_that_counts_octets_has_nothing_of_what_is_behind_it(tmp_path, control):
+    """So do those that cl2000 links, one right behind the other."""
     section = linked.debug_lines(control)
     behind = unit(at(0x3F4002) + b"\3\x09\1\2\x04" + END)  # as another section's octets might be read
     data = coff([Block(first, tuple(words)) for first, words in linked.runs(control.words)])

@@ -1,6 +1,7 @@
 """Executables of TI's COFF for the C28x (version 2, target 0x009D), as cl2000 links them: loadable sections alone.
 
-Source: TI's description of its COFF (SPRAAO8), from memory; sizes count words, values are little-endian.
+Source: TI's description of its COFF (SPRAAO8), and published dumps of what cl2000 18.1 made; sizes count words, of
+debug information octets, values are little-endian.
 """
 
 from __future__ import annotations
@@ -94,6 +95,10 @@ class _Head(NamedTuple):
     def load_and_run(self) -> tuple[int, int]:
         """Where it is loaded and where it runs."""
         return _load_and_run(self.physical, self.virtual)
+
+    def words(self, data: bytes) -> bytes:
+        """Its content where the size counts words, two octets each."""
+        return data[self.raw : self.raw + 2 * self.size]
 
 
 def _heads(data: bytes) -> Iterator[_Head]:
@@ -217,19 +222,25 @@ def line_tables(data: bytes) -> Iterator[tuple[int, int, bytes]]:
 
 
 def section(data: bytes, wanted: str) -> Iterator[bytes]:
-    """The content of a section that is not loaded, in each way in which its octets may lie in words.
+    """The content of a section that is not loaded, in each way in which its octets may lie.
 
-    Two to a word, one to a word, or a size that counts octets: tools differ, and whoever reads sees which it is.
+    Sizes of debug information count octets (a published dump of what cl2000 18.1 has linked). Others may count words,
+    with two octets to a word or one: whoever reads sees which it is.
 
     Raises:
         struct.error: the file is cut short.
     """
     for head in _heads(data):
         if head.raw and text(head.name, data) == wanted:
-            packed = data[head.raw : head.raw + 2 * head.size]
-            yield packed
-            yield packed[::2]
-            yield data[head.raw : head.raw + head.size]
+            words = head.words(data)
+            yield words[: head.size]
+            yield words
+            yield words[::2]
+
+
+def words_of(data: bytes, wanted: str) -> bytes:
+    """The words of a section that is not loaded; empty without one. Raises as `section` does."""
+    return next((head.words(data) for head in _heads(data) if head.raw and text(head.name, data) == wanted), b"")
 
 
 def _name(name: bytes, data: bytes, strings: int) -> str | None:

@@ -23,7 +23,7 @@ def read(data: bytes, name: str) -> list[Block]:
     Raises:
         InputError: the table does not come to its end.
     """
-    table = next(coff.section(data, SECTION), b"")
+    table = coff.words_of(data, SECTION)
     words = struct.unpack(f"<{len(table) // 2}H", table[: len(table) // 2 * 2])
     blocks, at = [], 0
     while at < len(words) and words[at]:
