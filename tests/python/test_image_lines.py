@@ -1,5 +1,6 @@
 """Source lines: what the assembler says of its programs, what line programs of DWARF say, who names lines by them."""
 
+import re
 import struct
 
 import pytest
@@ -299,6 +300,17 @@ def test_image_time_says_what_lines_took(tmp_path):
     texts = (PROGRAMS / "control.asm").read_text().splitlines()
     waiting = {int(row.split()[0].split(":")[1]) for row in rows}
     assert all("SCIRXST" in texts[number - 1] or "beside,NTC" in texts[number - 1] for number in waiting)
+
+
+def test_image_time_says_what_lines_took_of_an_interrupt(tmp_path):
+    image = linked_file(tmp_path, "control")
+    done = run_command("time", image, "--after", "0.02", "--for", "0.002", "--lines", "100")
+    each = re.findall(r"(?m)^    (\S+) +([\d.]+)   of each in the mean$", done.stdout)
+    assert each[0] == ("sample", "52.0")
+    lines = {name: float(took) for name, took in each[1:]}
+    assert sum(lines.values()) == 52
+    returns = (PROGRAMS / "sampled.asm").read_text().splitlines().index("        IRET") + 1
+    assert max(lines, key=lines.get) == f"sampled.asm:{returns}"
 
 
 def test_assembling_says_what_is_wrong_and_where(tmp_path):

@@ -50,7 +50,11 @@ def _say_run(file: Path, seconds: float, before: Mapping[str, int], after: Mappi
 
 
 def _say_interrupts(
-    image: Image, each: Mapping[Interrupt, list[int]], within: Mapping[Interrupt, Mapping[int, int]], most: int
+    image: Image,
+    each: Mapping[Interrupt, list[int]],
+    within: Mapping[Interrupt, Mapping[int, int]],
+    most: int,
+    lines: int,
 ) -> None:
     names = image.names.functions
     print(f"\n{'interrupt':<28}{'count':>8}{'mean':>10}{'worst':>8}   cycles")
@@ -72,6 +76,7 @@ def _say_interrupts(
             (_ELSEWHERE, timed.elsewhere(rows, inside)[0]),
             (_OUTSIDE, timed.outside(inside)[0]),
         ]
+        of_each += [(f"{source}", count[0]) for source, count in timed.by_line(image.names.lines, inside)[:lines]]
         for name, count in of_each:
             if count:
                 print(f"    {name:<32}{count / len(cycles):>10.1f}   of each in the mean")
@@ -148,7 +153,7 @@ class _Looked:
         spent, interrupts, stack = board.spent()
         within = board.within()
         if interrupts or within:
-            _say_interrupts(self._image, interrupts, within, self._most)
+            _say_interrupts(self._image, interrupts, within, self._most, self._lines)
         _say_functions(self._image, spent, self._most)
         if self._lines:
             _say_lines(self._image, spent, self._lines)
