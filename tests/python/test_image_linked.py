@@ -77,7 +77,9 @@ def as_coff(made):
         *(Named(name, at[name], ".text", LABEL) for name in ("L1", "L2", "L3")),
         Named("DW$L$_memcpy$2$B", at["L1"], ".text", STATIC),
         *(Named(name, at[name.upper()], ".text") for name in FUNCTIONS),
+        Named("_RamfuncsRunStart", RUN, "ramfuncs"),
         Named("_InitCpuTimer", RUN, "ramfuncs"),
+        Named("_etext", 0xFFFFFFFF, ABSOLUTE),
         Named("_RamfuncsLoadStart", LOAD, ABSOLUTE),
         Named("__STACK_SIZE", 0x200, ABSOLUTE),
         *(Named(name, at[name.upper()], ".ebss") for name in ("_ticks", "_value", "_caught")),
@@ -92,7 +94,7 @@ def as_elf(made):
     blocks += [Block(MAIN, words(program, MAIN, CONST)), Block(BEGIN, words(program, BEGIN, BEGIN + 2))]
     at = program.symbols
     symbols = [(EABI.get(name, name.removeprefix("_")), at[name.upper()], 2, FUNCTION) for name in FUNCTIONS]
-    symbols += [("$C$L1", at["L1"], 2, UNTYPED), ("InitCpuTimer", RUN, 4, FUNCTION)]
+    symbols += [("$C$L1", at["L1"], 2, UNTYPED), ("ramfuncs_run", RUN, 4, UNTYPED), ("InitCpuTimer", RUN, 4, FUNCTION)]
     symbols += [(name[1:], at[name.upper()], None, 1) for name in ("_ticks", "_value", "_caught")]
     return elf(blocks, BEGIN, symbols=symbols, runs={0: RUN})
 
@@ -149,3 +151,9 @@ def test_an_interrupt_between_any_two_instructions_of_a_routine_changes_nothing(
     done = stillspin("image", "inject", image, *places)
     assert done.exit_code == 0, done.output
     assert "I$$DIV" in done.stdout
+
+
+def test_a_name_without_an_address_is_no_place(made, file):
+    done = stillspin("image", "trace", file(as_coff(made)), "--from", "etext")
+    assert done.exit_code == 2
+    assert "--from: etext is a number in the image (0xFFFFFFFF), no address" in done.stderr

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from stillspin.errors import InputError
 from stillspin.flash import layout
+from stillspin.flash.code_names import chosen
 from stillspin.flash.octets import readable
 from stillspin.flash.program import Block, Program, assemble, complete
 
@@ -32,8 +33,9 @@ _LINE_SIZE = 6
 _EXTERNAL = 2
 _NAMED = {_EXTERNAL, 3, 6}
 """Storage classes of what has an address: external, static, label."""
+_SECTIONS = re.compile(r"[.$].*")
 _WITHIN = re.compile(r"[.$].*|DW\$.*|C\$.*|L\d+")
-"""Names of sections, and of places within a function, which assemblers keep where they are told to (cl2000 -as)."""
+"""And of places within a function, which assemblers keep where they are told to (cl2000 -as)."""
 BEGIN_OR_END = 101
 """Storage class of .bf and .ef, about the lines of a function."""
 _ABSOLUTE = -1
@@ -134,18 +136,17 @@ def _load_and_run(physical: int, virtual: int) -> tuple[int, int]:
 
 
 def functions(data: bytes) -> dict[int, str]:
-    """Names of places in code, by run address. Of several at one address the first that is external or a function's.
+    """Names of places in code, by run address.
 
     Raises:
         struct.error: the file is cut short.
     """
     code = {number for number, head in enumerate(_heads(data), 1) if head.kind & _TEXT}
-    found: dict[int, str] = {}
-    for name, value, section, kind in _symbols(data):
-        is_place = kind != _EXTERNAL and _WITHIN.fullmatch(name)
-        if section in code and not is_place and not name.startswith((".", "$")):
-            found.setdefault(value, name)
-    return found
+    return chosen(
+        (value, name, False)
+        for name, value, section, kind in _symbols(data)
+        if section in code and not (_WITHIN if kind != _EXTERNAL else _SECTIONS).fullmatch(name)
+    )
 
 
 def addresses(data: bytes) -> dict[str, int]:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from stillspin.errors import InputError
+from stillspin.flash.code_names import chosen
 from stillspin.flash.octets import readable
 from stillspin.flash.program import Block, Program, assemble, complete
 
@@ -38,9 +39,10 @@ _NO_CONTENT = 8
 _ALLOCATED = 2
 _SYMBOL_TABLE = 2
 _INSTRUCTIONS = 4
-_NAMED = {0, 2}
+_FUNCTION = 2
+_NAMED = {0, _FUNCTION}
 """Types of symbols that are places in code: without a type (assembly), function."""
-_ADDRESSED = {0, 1, 2}
+_ADDRESSED = {0, 1, _FUNCTION}
 """And of data: object."""
 
 
@@ -96,18 +98,21 @@ def _blocks(data: bytes, header: _Header, name: str) -> Iterator[Block]:
 
 
 def functions(data: bytes) -> dict[int, str]:
-    """Names of places in code, by run address; of several at one address the first.
+    """Names of places in code, by run address.
 
     Raises:
         struct.error: the file is cut short.
     """
     sections = _sections(data)
-    found: dict[int, str] = {}
-    for name, value, kind, section in _named(data, sections):
-        code = section < len(sections) and sections[section][2] & _INSTRUCTIONS
-        if code and kind in _NAMED and not name.startswith((".", "$")):
-            found.setdefault(value, name)
-    return found
+
+    def is_code(section: int) -> bool:
+        return section < len(sections) and bool(sections[section][2] & _INSTRUCTIONS)
+
+    return chosen(
+        (value, name, kind == _FUNCTION)
+        for name, value, kind, section in _named(data, sections)
+        if is_code(section) and kind in _NAMED and not name.startswith((".", "$"))
+    )
 
 
 def addresses(data: bytes) -> dict[str, int]:

@@ -63,6 +63,8 @@ class Names:
             InputError: there is nothing of it.
         """
         if (found := self.of_name(text)) is not None:
+            if found > _LAST:
+                raise InputError(f"{option}: {text} is a number in the image (0x{found:08X}), no address")
             return found
         file, _, number = text.rpartition(":")
         if file and number.isdigit():
