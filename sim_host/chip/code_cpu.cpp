@@ -114,16 +114,20 @@ void CodeCpu::sleep() {
     chip_.model_error("IDLE with a low-power mode selected in LPMCR0 is not modelled", 0);
   }
   const Tick begin = chip_.now_;
+  const Tick idle = chip_.statistics_.idle_ticks;
+  const std::uint64_t cycles = cpu_.cycles;
   chip_.idle_ = true;
   while ((cpu_.r.ifr & cpu_.r.ier) == 0) {
+    if (chip_.now_ >= chip_.limit_) chip_.coroutine_.suspend();  // whoever looks then sees how long it has slept
     const bool held = chip_.interrupts_.held();
     chip_.interrupts_.set_ier(held ? std::uint16_t{0} : cpu_.r.ier);
-    chip_.wait_for_interrupt(kNever, false);
+    chip_.wait_for_interrupt(chip_.limit_, false);
+    chip_.statistics_.idle_ticks = idle + (chip_.now_ - begin);
+    cpu_.cycles = cycles;
+    note_passed(begin);
     collect();
   }
   chip_.idle_ = false;
-  chip_.statistics_.idle_ticks += chip_.now_ - begin;
-  note_passed(begin);
 }
 
 // The chip's time has gone on by itself.

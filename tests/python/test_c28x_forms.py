@@ -244,6 +244,14 @@ def test_a_program_has_labels_values_and_data():
     ]
 
 
+def test_what_is_repeated_stands_on_the_line_of_rpt_or_on_the_next():
+    """TI's header files have it on one."""
+    for text in ("RPT #7 || NOP", "RPT #7\n|| NOP", "here: RPT #7||NOP ; a remark"):
+        assert assemble(text).words == {0: 0xF607, 1: 0x7700}
+    with pytest.raises(InputError, match="line 1"):
+        assemble("NOP || NOP")
+
+
 @pytest.mark.parametrize("line", [".word nothing", "B nowhere,UNC", ".orgy 3", "MOV @AL"])
 def test_an_error_names_its_line(line):
     with pytest.raises(InputError, match="line 2"):

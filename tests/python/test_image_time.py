@@ -4,7 +4,7 @@ import re
 import struct
 
 import pytest
-from c28x_chip import MILLISECOND, blocks, program
+from c28x_chip import MILLISECOND, blocks, linked_file, program
 from flash_files import coff, intel_hex
 from in_process import stillspin
 
@@ -203,3 +203,18 @@ def test_a_stack_begins_where_the_program_says(tmp_path, room, says):
     made = [Block(first, tuple(words)) for first, words in blocks(assemble(STACK).words)]
     image.write_bytes(coff(made, entry=0x9000, empty=room))
     assert run_command(image, "--for", "0.001").stdout.splitlines()[-1] == says
+
+
+def test_a_program_that_sleeps_for_good_is_said_to_sleep(tmp_path):
+    """Also where nothing has woken it: a stretch that begins and ends within its sleep."""
+    source = tmp_path / "sleeps.asm"
+    source.write_text(
+        " .org 0x3F7FF6\n LB start\n .org 0x3F4000\nstart: EALLOW\n MOVW DP,#0x7029>>6\n MOV @0x29,#0x68\n IDLE\n"
+        "stay: SB stay,UNC\n"
+    )
+    image = linked_file(tmp_path, "sleeps", [source])
+    done = stillspin("image", "time", image, "--after", "0.005", "--for", "0.01")
+    assert done.exit_code == 0, done.stderr
+    first, second, *_ = done.stdout.splitlines()
+    assert first == "sleeps.out: 0.01 s, 100000 cycles, 0 instructions", "at the 10 MHz of a chip whose PLL is off"
+    assert second.endswith("asleep 100.0 %")

@@ -1,6 +1,7 @@
 """From text to words: a program of instructions, labels and directives.
 
-`;` is before a remark, `label:` before what it names, `||` before the instruction that RPT repeats. The directives are
+`;` is before a remark, `label:` before what it names, `||` before the instruction that RPT repeats, on its line or the
+next. The directives are
 
     .org 0x1000          where what follows is
     .sect "name"         the same by name: whoever assembles says where each section begins
@@ -28,6 +29,7 @@ from stillspin.errors import InputError
 
 _TOLD = (".DEF", ".GLOBAL")
 _READ_OVER = ".REF"
+_REPEATED = re.compile(r"(RPT\s[^|]+)\|\|(.+)")
 _HERE = re.compile(r"(?<![\w$])\$(?![\w$])")
 
 
@@ -113,9 +115,11 @@ class _Pass:
         if text.startswith("."):
             name, *rest = text.split(maxsplit=1)
             self.directive(name, re.sub(r"\s", "", "".join(rest)).split(","))
-        elif text:
+            return
+        repeated = _REPEATED.fullmatch(text)
+        for instruction in filter(None, repeated.groups() if repeated else (text,)):
             self.program.lines[self.at] = where
-            self.put(assemble_line(text, self.at, self.evaluate))
+            self.put(assemble_line(instruction, self.at, self.evaluate))
 
 
 def _read(file: Path) -> str:
