@@ -3,11 +3,12 @@
 
 Usage: .venv/bin/python toolchain/c28x_listing.py LISTING [--out FILE]
 
-LISTING is what dis2000 writes of a linked file; such listings of programs for this chip are published, and they are no
-part of this project. Each instruction is assembled as TI writes it, and has to come to the words beside it; one that
-does not is printed. FILE is the program as an executable with its names, which the commands for images take; what
-TI's command files never load (.reset) is left out. Exit status 0 when all agree, 1 when one does not, 2 for a file
-without instructions.
+LISTING is what dis2000 writes of a linked file; such listings of programs for this chip are published, and they are
+no part of this project. Each instruction is assembled as TI writes it, and has to come to the words beside it; one
+that does not is printed. (A move between registers may be either of two codes, of which the text does not tell
+which.) FILE is the program as an executable with its names, which the commands for images take; what TI's command
+files never load (.reset) is left out. Exit status 0 when all agree, 1 when one does not, 2 for a file without
+instructions.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from typing import NamedTuple
 
 from stillspin.c28x import linked
 from stillspin.c28x.assembler import assemble_line
+from stillspin.c28x.disassembler import disassemble
 from stillspin.c28x.program import Program
 from stillspin.errors import InputError
 
@@ -29,6 +31,7 @@ ENTRIES = ("code_start", "codestart", "_c_int00")
 _SECTION = re.compile(r'\s*\.sect\s+"(.+)"\s*')
 _LABEL = re.compile(r"([0-9a-f]+):\s+(\S+):\s*")
 _ROW = re.compile(r"([0-9a-f]{8})\s+([0-9a-f]{4})(?:\s+(?:\|\|)?\s*(.*?))?\s*")
+_REGISTER = re.compile(r"@(X?AR\d|ACC|XT|P|[APT][LH]?|SP)\b")
 _OF_A_FUNCTION = re.compile(r"L\d+|\$C\$.*")
 """Labels that are no names."""
 
@@ -46,10 +49,18 @@ class Row(NamedTuple):
         if not self.text:
             return ""
         try:
-            words = assemble_line(self.text.replace("|", ","))  # branches say how far, as from address 0
+            words = assemble_line(self.text)  # branches say how far, as from address 0
         except InputError as error:
             return str(error)
-        return "" if words == self.words else "is " + " ".join(f"{word:04x}" for word in words) + " here"
+        if words == self.words or self._is_of_registers:
+            return ""
+        return "is " + " ".join(f"{word:04x}" for word in words) + " here"
+
+    @property
+    def _is_of_registers(self) -> bool:
+        """Whether it moves one register to another: there are two codes for that, which are written alike without @."""
+        here = disassemble(self.words).text
+        return _REGISTER.sub(r"\1", here).replace(" ", "") == self.text.upper().replace(" ", "")
 
 
 def read(text: str) -> tuple[list[Row], dict[str, int]]:

@@ -197,6 +197,9 @@ f5a9 0882  MOV AL,*(0:0x0882)        | f4a9 7077  MOV *(0:0x7077),AL       | f54
 402f       TBIT @0x2f,#0x0           | 900f       ANDB AL,#0xf             | 1ca9 ffff  XOR AL,#0xffff
 5603 013a  MOV ACC,@0x3a << 1        | cc21 0010  AND AL,@0x21,#0x10       | 56b1 c822  MOVB @0x22,#0xc8,EQ
 1821 fc3f  AND @0x21,#0xfc3f         | 7ec4       MOV *+XAR4[0],AR6        | c446       MOVL XAR6,*-SP[6]
+56a7       LSL64 ACC:P,8             | f004       XORB AL,#0x4             | be00       MOVB XAR6,#0x00
+5605 00a1  IMPYL P,XT,XAR1           | 8f40 0004  MOVL XAR5,#0x000004       | 5cad       MOVZ AR4,SP
+6542       SB 66,LEQ                 | 67f9       SB -7,HIS                | dc8c       SUBB XAR4,#12
 9cff       ADDB AL,#-1               | f447 7077  MOV *(0:0x7077),*-SP[7]  | ec80       SBF -128,EQ
 """
 """What cl2000 6.1 and the libraries of TI come to, by TI's own disassembler. Its branches say how far."""

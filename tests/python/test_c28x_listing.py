@@ -71,6 +71,19 @@ def test_what_differs_is_named(listing, capsys):
     ]
 
 
+def test_moves_between_registers_have_two_codes_of_one_text(listing, capsys):
+    rows = "\n".join(f"0000000{k}   {word}       {text}" for k, (word, text) in enumerate([
+        ("1eac", "MOVL         XT, ACC"), ("87a9", "MOVL         XT, ACC"), ("aaa9", "MOVL         ACC, XAR2"),
+        ("06a2", "MOVL         ACC, XAR2"), ("aaa9", "MOVL         ACC, XAR3"),
+    ]))  # fmt: skip
+    listing.write_text(f"{rows}\n")
+    assert c28x_listing.main([str(listing)]) == 1
+    assert capsys.readouterr().out.splitlines() == [
+        "0x000004 aaa9 MOVL         ACC, XAR3: is 06a3 here",
+        "5 instructions, 1 of them differ",
+    ]
+
+
 def test_what_is_no_listing_is_said(listing, tmp_path, capsys):
     listing.write_text("nothing of the kind\n")
     assert c28x_listing.main([str(listing)]) == 2
