@@ -14,7 +14,7 @@ _HEADS = 22 + 28
 
 
 class Part(NamedTuple):
-    """A section; its content is words, or octets that are not the program's, or how many words it takes."""
+    """A section; its content is words, or octets beside the program, or how many words it takes."""
 
     name: str
     run: int
@@ -53,7 +53,7 @@ class _Strings:
 
 def _content(part):
     if isinstance(part.content, bytes):
-        return len(part.content) // 2, part.content
+        return len(part.content), part.content
     if isinstance(part.content, int):
         return part.content, b""
     return len(part.content), struct.pack(f"<{len(part.content)}H", *part.content)

@@ -53,9 +53,10 @@ def words(program, first, end):
 
 
 def as_coff(made):
-    """Long names of sections, dummies, empty ones, debug information of more than 64 K words, auxiliary entries."""
+    """Long names of sections, dummies, empty ones, words at odd places, long debug information, auxiliary entries."""
     program, ram = made
     parts = [
+        Part("$build.attributes", 0, bytes(39), COPY),
         Part("ramfuncs", RUN, words(ram, RUN, RUN + 100), load=LOAD),
         Part("csm_rsvd", 0x3F7F80, (0,) * 0x76),
         *(Part(name, at, size, BSS, page=1) for name, at, size in REGISTERS),
@@ -68,11 +69,12 @@ def as_coff(made):
         Part(".reset", 0x3FFFC0, (0x0040, 0), TEXT | DUMMY),
         Part("vectors", 0x3FFFC2, 0, TEXT | DUMMY),
         Part(".text", MAIN, words(program, MAIN, CONST)),
-        Part(".debug_info", 0, bytes(2 * 70_001), COPY),
+        Part(".debug_info", 0, bytes(70_001), COPY),
     ]
     at = program.symbols
     symbols = [
-        Named("../main.c", 0, -2, FILE, b"main.c"),
+        Named("{7B59F295-3030-4813-8466-600627BDA2FC}", 0, -2, FILE),
+        Named("$C$FSL1", CONST, ".econst", LABEL),
         Named(".text", MAIN, ".text", STATIC, b"\1"),
         *(Named(name, at[name], ".text", LABEL) for name in ("L1", "L2", "L3")),
         Named("DW$L$_memcpy$2$B", at["L1"], ".text", STATIC),
