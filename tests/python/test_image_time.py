@@ -120,6 +120,17 @@ def test_functions_reach_to_the_next_name():
     assert timed.elsewhere(rows, spent) == (7, 1, 2, 3)
 
 
+def test_a_function_ends_where_its_section_does():
+    """Constants behind it are not its own; code without a name goes by its section's."""
+    there = Program((Block(0x3F4000, (0x7700, 0x0006, 1, 2, 3, 0x0040, 0x8000)),))
+    spent = {0x3F4000: (4, 0, 0, 0), 0x3F4005: (2, 0, 0, 0), 0x8000: (5, 0, 0, 0)}
+    sections = {0x3F4000: ".text", 0x3F4002: ".econst", 0x3F4005: "codestart", 0x8000: "ramfuncs"}
+    rows = timed.functions(there, {0x3F4000: "main"}, spent, sections)
+    assert [(row.name, row.cycles, row.end - row.first) for row in rows] == [
+        *(("ramfuncs", 5, 1), ("main", 4, 2), ("codestart", 2, 2))
+    ]
+
+
 def test_a_function_that_runs_from_ram_goes_by_its_name():
     there = Program((Block(0x3F4000, (0x7700, 0x0006, 0x7700, 0x0006)),))
     spent = {

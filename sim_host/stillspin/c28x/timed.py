@@ -15,11 +15,12 @@ from stillspin.flash.program import Program
 _BARS = 8
 _BAR = 24
 _UNNAMED = "(no name)"
+NO_SECTIONS: Mapping[int, str] = {}
 
 
 @dataclass(frozen=True)
 class Function:
-    """A stretch of code from one name to the next, or to the end of its block."""
+    """A stretch of code from one name to the next, or to the end of its section."""
 
     name: str
     first: int
@@ -43,31 +44,35 @@ def added(some: Iterable[Spent]) -> Spent:
     return cycles, registers, data, fetches
 
 
-def functions(program: Program, names: Mapping[int, str], spent: Mapping[int, Spent]) -> list[Function]:
+def functions(
+    program: Program, names: Mapping[int, str], spent: Mapping[int, Spent], sections: Mapping[int, str] = NO_SECTIONS
+) -> list[Function]:
     """Those that the program has, in the order of their cycles; what runs elsewhere than it is loaded goes by its name.
 
     Args:
         program: its words.
         names: of places in its code, by address.
         spent: cycles and waits by the address of the instruction.
+        sections: names of sections by where they begin, for code without a name of its own.
     """
-    starts = sorted({*names, *(block.address for block in program.blocks)})
+    starts = sorted({*names, *sections, *(block.address for block in program.blocks)})
     made = []
     for first, following in zip(starts, [*starts[1:], 1 << 22], strict=True):
+        name = names.get(first) or sections.get(first, _UNNAMED)
         block = next((block for block in program.blocks if block.address <= first < block.end), None)
         if block is None:
             end = min(following, (memories.stretch(first) or range(0)).stop)
             there = [address for address in spent if first <= address < end and program.word(address) is None]
             if there:
                 took = added(spent[address] for address in there)
-                made.append(Function(names[first], first, max(there) + 1, took, 0, copied=True))
+                made.append(Function(name, first, max(there) + 1, took, 0, copied=True))
             continue
         end = min(following, block.end)
         there = [address for address in spent if first <= address < end]
         ran = sum(_length(program, address) for address in there)
         if first in names or there:
             took = added(spent[address] for address in there)
-            made.append(Function(names.get(first, _UNNAMED), first, end, took, ran))
+            made.append(Function(name, first, end, took, ran))
     return sorted(made, key=lambda function: -function.cycles)
 
 

@@ -56,7 +56,7 @@ def _say_interrupts(
     most: int,
     lines: int,
 ) -> None:
-    names = image.names.functions
+    names, begins = image.names.functions, _begins(image)
     print(f"\n{'interrupt':<28}{'count':>8}{'mean':>10}{'worst':>8}   cycles")
     for which in sorted({*each, *within}):
         vector, routine = which
@@ -69,7 +69,7 @@ def _say_interrupts(
         for line in timed.histogram(cycles):
             print(line)
         inside = {address: (count, 0, 0, 0) for address, count in within.get(which, {}).items()}
-        rows = timed.functions(image.program, names, inside)
+        rows = timed.functions(image.program, names, inside, begins)
         of_each = [(row.name, row.cycles) for row in rows[:most]]
         of_each += [
             ("(the others)", sum(row.cycles for row in rows[most:])),
@@ -80,6 +80,12 @@ def _say_interrupts(
         for name, count in of_each:
             if count:
                 print(f"    {name:<32}{count / len(cycles):>10.1f}   of each in the mean")
+
+
+def _begins(image: Image) -> dict[int, str]:
+    """The names of its sections by where they begin; none of a format without names."""
+    there = [part for part in sections.read(image.file, image.program) if not part.name.startswith("(")]
+    return {at: part.name for part in there for at in (part.run, part.load) if at is not None}
 
 
 def _shares(spent: Spent, total: int) -> str:
@@ -94,7 +100,7 @@ _HEADS = f"{'cycles':>12}{'share':>9}" + "".join(f"{head:>11}" for head in _WAIT
 
 def _say_functions(image: Image, spent: Mapping[int, Spent], most: int) -> None:
     program = image.program
-    rows = timed.functions(program, image.names.functions, spent)
+    rows = timed.functions(program, image.names.functions, spent, _begins(image))
     total = max(sum(cycles for cycles, *_ in spent.values()), 1)
     print(f"\n{'function':<28}{_HEADS}{'ran':>8}   of its words")
     for row in rows[:most]:
