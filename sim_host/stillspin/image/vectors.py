@@ -10,6 +10,8 @@ _PIE_FIRST = 32
 _CHANNELS = 8
 _GROUPS = 12
 _TIMERS = (13, 14)
+_OWN = {0: "RESET", 15: "DLOGINT", 16: "RTOSINT", 17: "EMUINT", 18: "NMI", 19: "ILLEGAL"}
+_USER_FIRST = 20
 
 
 def number(text: str, option: str) -> int:
@@ -32,4 +34,6 @@ def name(vector: int) -> str:
     if vector >= _PIE_FIRST:
         group, channel = divmod(vector - _PIE_FIRST, _CHANNELS)
         return f"INT{group + 1}.{channel + 1}"
-    return {18: "NMI", 19: "ILLEGAL"}.get(vector, f"INT{vector}" if vector < 15 else f"vector {vector}")
+    if vector >= _USER_FIRST:
+        return f"USER{vector - _USER_FIRST + 1}"
+    return _OWN.get(vector, f"INT{vector}")
