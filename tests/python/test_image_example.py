@@ -52,11 +52,10 @@ def files(parts):
 
 
 @pytest.mark.parametrize("form", ["elf", "coff", "coff the other way"])
-def test_it_starts_and_runs(parts, tmp_path, form):
+def test_it_starts_and_runs(parts, file, form):
     at = parts[0]
-    file = tmp_path / "example.out"
-    file.write_bytes(dict(files(parts))[form])
-    image = opened.read(file)
+    path = file(dict(files(parts))[form])
+    image = opened.read(path)
     board = opened.power_on(image, "bench", "A", 1)
     with opened.closing(board, image):
         opened.advance(board, 0.02)
@@ -74,20 +73,18 @@ def test_it_starts_and_runs(parts, tmp_path, form):
         assert opened.warnings(board, image) == []
 
 
-def test_its_registers_are_no_memory_that_is_missing(parts, tmp_path):
-    file = tmp_path / "example.out"
-    file.write_bytes(dict(files(parts))["coff"])
-    done = CliRunner().invoke(cli.app, ["image", "show", str(file)])
+def test_its_registers_are_no_memory_that_is_missing(parts, file):
+    path = file(dict(files(parts))["coff"])
+    done = CliRunner().invoke(cli.app, ["image", "show", str(path)])
     assert done.exit_code == 0, done.output
     assert "AdcRegs                  26  -          0x007100  registers" in done.stdout
     assert "in no memory of the chip" not in done.stdout
 
 
-def test_its_delay_takes_the_cycles_that_it_is_written_for(parts, tmp_path):
+def test_its_delay_takes_the_cycles_that_it_is_written_for(parts, file):
     at = parts[0]
-    file = tmp_path / "example.out"
-    file.write_bytes(dict(files(parts))["elf"])
-    image = opened.read(file)
+    path = file(dict(files(parts))["elf"])
+    image = opened.read(path)
     board = opened.power_on(image, "bench", "A", 1)
     with opened.closing(board, image):
         cycles = []

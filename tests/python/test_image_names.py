@@ -21,13 +21,8 @@ ELF_SYMBOLS = [
 
 
 @pytest.fixture
-def read(tmp_path):
-    def write_and_read(data):
-        path = tmp_path / "some.out"
-        path.write_bytes(data)
-        return names.read(path)
-
-    return write_and_read
+def read(file):
+    return lambda data: names.read(file(data))
 
 
 def coff_with(spoilt=b""):
