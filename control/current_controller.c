@@ -4,9 +4,6 @@
 
 // Bandwidth over the corner of the integrator.
 #define RESET_RATIO 4
-// Bandwidth times the delay, in parts per million of 2 rad.
-#define PHASE_MAX_PPM 260000L
-#define BANDWIDTH_MAX 2600
 #define ONE_Q20 1048576L
 
 static pi_config_t design_axis(const machine_model_t* m, int32_t inductance_q30, const current_design_t* d) {
@@ -19,15 +16,10 @@ static pi_config_t design_axis(const machine_model_t* m, int32_t inductance_q30,
   return c;
 }
 
-bool current_controller_design(current_controller_config_t* c, const machine_model_t* m,
+void current_controller_design(current_controller_config_t* c, const machine_model_t* m,
                                const current_design_t* design) {
-  if (!q_in_range(design->divider, 1, 2) || !q_in_range(design->bandwidth_rads, 100, BANDWIDTH_MAX)) return false;
-  // Delay over two periods: (3 + n) / 4.
-  const int32_t phase_ppm = design->bandwidth_rads * design->period_us / 4 * (3 + design->divider);
-  if (phase_ppm > PHASE_MAX_PPM) return false;
   c->d = design_axis(m, m->ld_q30, design);
   c->q = design_axis(m, m->lq_q30, design);
-  return true;
 }
 
 void current_controller_reset(current_controller_t* s) {

@@ -37,14 +37,14 @@ typedef struct {
 typedef enum { CURRENT_CORNER_QUARTER = 0, CURRENT_CORNER_MACHINE = 1 } current_corner_t;
 
 typedef struct {
-  int32_t bandwidth_rads;   // a, 100..2600 at a step in every period of 100 us
+  int32_t bandwidth_rads;   // a, 100..2600 at a step in every period of 100 us, to 2080 at every other
   int32_t period_us;        // PWM period
   int32_t divider;          // n: periods per step, 1..2
   current_corner_t corner;  // of the integrator: a/4, or R/L of the machine
 } current_design_t;
 
-/// Derives the gains. Returns false when the bandwidth is out of range.
-bool current_controller_design(current_controller_config_t* c, const machine_model_t* m,
+/// Derives the gains.
+void current_controller_design(current_controller_config_t* c, const machine_model_t* m,
                                const current_design_t* design);
 
 void current_controller_reset(current_controller_t* s);

@@ -15,13 +15,6 @@
 #define TILT_BITS 29u  // 32: K_dd counts twice
 #define K0_BITS 30u    // 1024 A per period
 
-static bool parameters_valid(const machine_parameters_t* p) {
-  return q_in_range(p->rs_q24, 16777L, 838860800L) && q_in_range(p->ld_q30, 35792L, 536870912L) &&
-         q_in_range(p->lq_q30, p->ld_q30, 536870912L) && q_in_range(p->flux_q28, 268435L, 268435456L) &&
-         q_in_range(p->inertia_q24, 168L, 16777216L) && q_in_range(p->pole_pairs, 1, 30) &&
-         q_in_range(p->period_us, 20, 500);
-}
-
 // T in seconds as Q30 is period_us * 2^30 / 1e6.
 static int32_t period_q30(int32_t period_us) { return q_div(period_us, 1000000L, 30); }
 
@@ -155,7 +148,6 @@ static void forget_trim(machine_trim_t* t) {
 }
 
 bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
-  if (!parameters_valid(p)) return false;
   m->nominal_rs_q24 = p->rs_q24;
   m->ld_q30 = p->ld_q30;
   m->lq_q30 = p->lq_q30;

@@ -67,9 +67,9 @@ typedef struct {
   int32_t psi_d_q16, psi_q_q16;          // psi/T at i_d = 0, V per (rad per period)
 } machine_model_t;
 
-/// Derives the constants, without saturation. Returns false, leaving the model unusable, when a parameter is outside
-/// its range or a constant outside its format: T/L above 0.6 A/V, lambda/T above 32000 V, Lq/Ld from 64, lambda/L from
-/// 1000 A, 3/2 p lambda above 30 N m/A, too light a rotor.
+/// Derives the constants, without saturation. Returns false, leaving the model unusable, when Lq is the smaller one or
+/// a constant outside its format: T/L above 0.6 A/V, lambda/T above 32000 V, Lq/Ld from 64, lambda/L from 1000 A, 3/2 p
+/// lambda above 30 N m/A, too light a rotor.
 bool machine_model_init(machine_model_t* m, const machine_parameters_t* p);
 
 /// Replaces the map by one with saturation. False, with the old one kept, when it is not usable (machine_map.h).

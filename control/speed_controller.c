@@ -4,13 +4,6 @@
 
 #define ONE_Q30 1073741824L
 
-static bool config_valid(const speed_controller_config_t* c) {
-  return q_in_range(c->friction_q24, 0, 16777216L) && q_in_range(c->inertia_q24, 168L, 16777216L) &&
-         q_in_range(c->step_periods, 1, 100) && q_in_range(c->alpha_q8, 256L, 25600000L) &&
-         q_in_range(c->trajectory_ms_q8, 256L, 51200L) && q_in_range(c->pi_bandwidth_q8, 256L, 51200L) &&
-         q_in_range(c->pi_damping_q12, 1228L, 245760L);
-}
-
 // 1 - x/n + x^2/(n (n + 1)) - ... for 0 <= x < 1, Q30: exact where B Ts / J is tiny.
 static int32_t series_q30(int32_t x_q30, int32_t n) {
   int32_t sum = ONE_Q30;
@@ -28,7 +21,6 @@ static int32_t exp_minus_q30(int32_t x_q30) { return series_q30(x_q30, 1); }
 static int32_t mean_decay_q30(int32_t x_q30) { return series_q30(x_q30, 2); }
 
 bool speed_controller_init(speed_controller_t* s, const speed_controller_config_t* c, const machine_model_t* m) {
-  if (!config_valid(c)) return false;
   const int32_t step_q30 = q_div(c->step_periods, m->periods_per_second, 30);  // Ts, s
   const int32_t x_q30 = qc_mul_sat(q_div(c->friction_q24, c->inertia_q24, 20), step_q30, 20);
   if (x_q30 >= ONE_Q30 / 2) return false;

@@ -25,7 +25,7 @@ typedef enum { SPEED_PREDICTIVE = 0, SPEED_PI = 1 } speed_law_t;
 
 typedef struct {
   int32_t friction_q24;      // B, N m s per rad, 0..1
-  int32_t inertia_q24;       // J, kg m^2
+  int32_t inertia_q24;       // J, kg m^2, 1e-5..1
   int32_t step_periods;      // speed period in PWM periods, 1..100
   int32_t alpha_q8;          // weight of the predicted speed error, A^2 s^2 / rad^2, 1..100000
   int32_t trajectory_ms_q8;  // time constant of the reference trajectory, 1..200 ms
@@ -58,8 +58,8 @@ typedef struct {
   int32_t lowest_q20, highest_q20;  // i_q allowed now, A: up to zero, from zero
 } speed_controller_input_t;
 
-/// Derives the gains. Returns false when a value is out of range, or the rotor so heavy or light that an ampere changes
-/// the speed by less than 512 or more than 8 million bpp in a step.
+/// Derives the gains. Returns false when the rotor is so heavy or light that an ampere changes the speed by less than
+/// 512 or more than 8 million bpp in a step, or stops by friction within two steps.
 bool speed_controller_init(speed_controller_t* s, const speed_controller_config_t* c, const machine_model_t* m);
 
 /// Gains for an acceleration per ampere that is this ratio (Q24, 1/8 to 8) of the one that the parameters say.

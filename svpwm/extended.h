@@ -12,9 +12,9 @@
 #include "svpwm/on_time.h"
 
 typedef struct {
-  int16_t window_min_ticks;  // T_min, shortest extended vector worth having
-  int16_t window_max_ticks;  // longest, bounds the ripple
-  int16_t zero_ticks;        // zero vector wanted, 0 for none
+  int16_t window_min_ticks;  // T_min, shortest extended vector worth having, 500..3000
+  int16_t window_max_ticks;  // longest, bounds the ripple, window_min_ticks..4000
+  int16_t zero_ticks;        // zero vector wanted, 0 for none, up to 5000
 } extended_config_t;
 
 void svpwm_extended(const extended_config_t* c, const svpwm_on_time_t* t, svpwm_pulses_t* pulses);

@@ -3,15 +3,6 @@
 #define FOUR_FIFTHS_Q15 26214u
 #define ONE_Q15 32768u
 
-bool modulator_config_valid(const modulator_config_t* c) {
-  return q_in_range(c->pulse_ticks, 1500, 4700) && q_in_range(c->extended.window_min_ticks, 500, 3000) &&
-         q_in_range(c->extended.window_max_ticks, c->extended.window_min_ticks, 4000) &&
-         q_in_range(c->extended.zero_ticks, 0, 5000) &&
-         q_in_range(c->sampling.settle_ticks, SAMPLING_SETTLE_MIN_TICKS, 2500) &&
-         q_in_range(c->sampling.burst_ticks, 50, 500) && q_in_range(c->sampling.span_min_ticks, 100, 2000) &&
-         q_in_range(c->sampling.last_tick, 5000, 9800);
-}
-
 void modulator_reset(modulator_t* s) {
   s->alternating.leg = 0;
   s->alternating.pair_first = false;

@@ -18,7 +18,7 @@ typedef enum {
 typedef struct {
   extended_config_t extended;
   sampling_config_t sampling;
-  int16_t pulse_ticks;  // mean pulse of the alternating layout
+  int16_t pulse_ticks;  // mean pulse of the alternating layout, 1500..4700
 } modulator_config_t;
 
 typedef struct {
@@ -31,9 +31,6 @@ typedef struct {
   ab_t realised_q16;  // mean voltage that the pattern gives, V
   bool limited;       // the command did not fit and was shortened in its direction
 } modulator_result_t;
-
-/// Returns false when a value is out of range.
-bool modulator_config_valid(const modulator_config_t* c);
 
 void modulator_reset(modulator_t* s);
 

@@ -8,7 +8,7 @@
 #define SAMPLING_SETTLE_MIN_TICKS 400  // to read the window before
 
 typedef struct {
-  int16_t settle_ticks;    // from an edge at the motor to the first sample, at least the above: ringing
+  int16_t settle_ticks;    // from an edge at the motor to the first sample, the above to 2500: ringing
   int16_t burst_ticks;     // length of a burst of conversions
   int16_t span_min_ticks;  // shortest useful time between the two bursts
   int16_t last_tick;       // the last burst must have been triggered by here, so that it is read before the period ends

@@ -105,7 +105,7 @@ static uint16_t windows_wanted(const parameters_t* p) {
   return (p->excitation == EXCITATION_BY_SOURCE) ? drive_source_selected()->windows : SVPWM_WINDOWS;
 }
 
-static bool load_modulation(drive_config_t* c) {
+static void load_modulation(drive_config_t* c) {
   const parameters_t* const p = &parameters;
   c->modulator.pulse_ticks = ticks(p->pulse_time);
   c->modulator.extended.window_min_ticks = ticks(p->window_minimum);
@@ -122,8 +122,6 @@ static bool load_modulation(drive_config_t* c) {
   c->dead_time.edge_band_q20 = EDGE_BAND_Q20 + c->dead_time.band_q20;
   c->dead_time.drop_q16 = p->device_drop;
   dead_time_design(&c->dead_time);
-  return modulator_config_valid(&c->modulator) && c->dead_time.turn_on_ticks >= c->dead_time.turn_off_ticks &&
-         c->dead_time.turn_on_ticks <= SVPWM_FIRST_TICK - 20;
 }
 
 static bool load_control(drive_config_t* c) {
@@ -148,9 +146,9 @@ static bool load_control(drive_config_t* c) {
   const current_design_t current = {p->current_bandwidth, DRIVE_PERIOD_US, p->current_divider,
                                     (current_corner_t)p->current_corner};
   mtpa_design(&c->mtpa, &c->nameplate);
+  current_controller_design(&c->current, &c->nameplate, &current);
   speed_controller_t trial;
-  return speed_controller_init(&trial, &c->speed, &c->nameplate) &&
-         current_controller_design(&c->current, &c->nameplate, &current);
+  return speed_controller_init(&trial, &c->speed, &c->nameplate);
 }
 
 // 1 / (time constant in slots of a kind), Q30, of a time in ms, Q8; 30 s means none.
@@ -229,7 +227,8 @@ static drive_config_t made;  // too large for the stack; the background level al
 packed_text_t drive_config_make(void) {
   clear(&made, sizeof made);
   load_values(&made.values);
-  const bool fits = load_machine(&made) && load_modulation(&made) && load_control(&made) && load_position(&made);
+  load_modulation(&made);
+  const bool fits = load_machine(&made) && load_control(&made) && load_position(&made);
   return fits ? make_parts(&made) : SAY_the_machine_s_parameters_are_too_extreme;
 }
 

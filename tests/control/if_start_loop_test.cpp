@@ -31,7 +31,7 @@ class Start {
     const if_start_parameters_t p = {raw(kCurrent, 20), 1000, bpp(500.0 / 60.0 * kTurn * 4.0) / 10000, bpp(125.7),
                                      5000};
     EXPECT_TRUE(if_start_design(&turn_config_, &model_, &p));
-    EXPECT_TRUE(current_controller_design(&current_config_, &model_, &kDesign));
+    current_controller_design(&current_config_, &model_, &kDesign);
     current_controller_reset(&current_);
     if_start_begin(&turn_, 0, false);
     frame_ = rad(turn_.angle_bam);

@@ -119,7 +119,7 @@ TEST_F(Units, CurrentControl) {
       const current_design_t design = {1500, 100, divider,
                                        corner == 1 ? CURRENT_CORNER_MACHINE : CURRENT_CORNER_QUARTER};
       current_controller_config_t wanted = {};
-      ASSERT_TRUE(current_controller_design(&wanted, &c.nameplate, &design));
+      current_controller_design(&wanted, &c.nameplate, &design);
       EXPECT_EQ(std::memcmp(&wanted.d, &c.current.d, sizeof wanted.d), 0) << divider << corner;
       EXPECT_EQ(std::memcmp(&wanted.q, &c.current.q, sizeof wanted.q), 0) << divider << corner;
     }

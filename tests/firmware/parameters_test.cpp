@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -97,6 +98,41 @@ TEST_F(Parameters, DefaultsLieInsideTheRanges) {
     EXPECT_LE(parameter_initial(info), parameter_maximum(info)) << stillspin::bench::text_of(parameter_name(info));
     EXPECT_EQ(parameter_get(info->id), parameter_initial(info)) << stillspin::bench::text_of(parameter_name(info));
     EXPECT_EQ(*kRows[k].value, parameter_initial(info)) << stillspin::bench::text_of(parameter_name(info));
+  }
+}
+
+// No module asks what its configuration may hold (control/, svpwm/): its header says so, and the table keeps within.
+// What joins two of them is a rule (firmware/config/rules.c).
+TEST_F(Parameters, RangesLieWithinThoseOfTheModules) {
+  const struct {
+    std::int32_t parameters_t::* parameter;
+    double low, high;  // in the parameter's unit
+  } modules[] = {
+      {&parameters_t::stator_resistance, 0.001, 50.0 - 1.0},  // and the devices' on-state resistance
+      {&parameters_t::device_resistance, 0.0, 1.0},
+      {&parameters_t::inductance_d, 0.0334, 500.0},
+      {&parameters_t::inductance_q, 0.0334, 500.0},
+      {&parameters_t::magnet_flux, 0.001, 1.0},
+      {&parameters_t::inertia, 1e-5, 1.0},
+      {&parameters_t::pole_pairs, 1.0, 30.0},
+      {&parameters_t::friction, 0.0, 1.0},
+      {&parameters_t::speed_alpha, 1.0, 100000.0},
+      {&parameters_t::speed_trajectory, 1.0, 200.0},
+      {&parameters_t::speed_pi_bandwidth, 1.0, 200.0},
+      {&parameters_t::speed_pi_damping, 0.3, 60.0},
+      {&parameters_t::current_bandwidth, 100.0, 2600.0},
+      {&parameters_t::current_divider, 1.0, 2.0},
+      {&parameters_t::pulse_time, 15.0, 47.0},
+      {&parameters_t::window_minimum, 5.0, 30.0},
+      {&parameters_t::window_maximum, 5.0, 40.0},
+      {&parameters_t::zero_time, 0.0, 50.0},
+      {&parameters_t::settle_time, 4.0, 25.0},  // SAMPLING_SETTLE_MIN_TICKS
+  };
+  for (const auto& m : modules) {
+    const auto is_its = [&](const Row& row) { return row.value == &(parameters.*m.parameter); };
+    const Row& r = *std::find_if(kRows.begin(), kRows.end(), is_its);
+    EXPECT_GE(r.minimum / std::pow(10.0, r.decimals), m.low * (1.0 - 1e-9)) << r.name;
+    EXPECT_LE(r.maximum / std::pow(10.0, r.decimals), m.high * (1.0 + 1e-9)) << r.name;
   }
 }
 

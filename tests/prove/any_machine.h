@@ -20,8 +20,13 @@ static inline ab_t any_ab(int32_t most) {
 static inline int32_t any_speed(void) { return any_from(-SPEED_MAX_BPP, SPEED_MAX_BPP); }
 
 static inline bool make_any_machine(machine_model_t* m) {
-  const machine_parameters_t p = {
-      any_from(0, RS_NOMINAL_MAX_Q24), any_i32, any_i32, any_i32, any_i32, any_i32, any_i32};
+  const machine_parameters_t p = {any_from(16777L, RS_NOMINAL_MAX_Q24),
+                                  any_from(35792L, 536870912L),
+                                  any_from(35792L, 536870912L),
+                                  any_from(268435L, 268435456L),
+                                  any_from(168L, 16777216L),
+                                  any_from(1, 30),
+                                  any_from(20, 500)};
   machine_map_parameters_t map;
   map.current_q20 = any_i32;
   for (uint16_t k = 0; k < MACHINE_MAP_POINTS; k++) {

@@ -30,10 +30,10 @@ static void keep_model(void) {
 }
 
 static void control_currents(void) {
-  const current_design_t design = {any_from(0, 10000), 100, any_from(0, 3), (current_corner_t)(any_u16 & 1u)};
+  const current_design_t design = {any_from(100, 2600), 100, any_from(1, 2), (current_corner_t)(any_u16 & 1u)};
   current_controller_config_t c;
   current_controller_t s;
-  if (!current_controller_design(&c, &model, &design)) return;
+  current_controller_design(&c, &model, &design);
   current_controller_reset(&s);
   while (any_bool()) {
     (void)current_controller_step(&s, &c, &model, any_dq(CURRENT_MAX_Q20), any_dq(CURRENT_MAX_Q20), any_speed());
@@ -42,7 +42,9 @@ static void control_currents(void) {
 }
 
 static void control_speed(void) {
-  const speed_controller_config_t c = {any_i32, any_i32, 10, any_i32, any_i32, any_i32, any_i32};
+  const speed_controller_config_t c = {any_from(0, 16777216L),   any_from(168L, 16777216L), 10,
+                                       any_from(256, 25600000L), any_from(256, 51200L),     any_from(256, 51200L),
+                                       any_from(1228, 245760L)};
   static speed_controller_t s;
   if (!speed_controller_init(&s, &c, &model)) return;
   while (any_bool()) {

@@ -116,12 +116,6 @@ static void advance(alternating_state_t* s);
     requires FITS(t, pulse_ticks); ensures in_room(pulses); */
 void svpwm_alternating(alternating_state_t* s, const svpwm_on_time_t* t, int16_t pulse_ticks, svpwm_pulses_t* pulses);
 
-// From the configuration that it calls valid to what the layouts need.
-
-/*@ requires \valid_read(c); assigns \nothing;
-    ensures \result != 0 ==> extended(&c->extended) && IS_PULSE(c->pulse_ticks); */
-bool modulator_config_valid(const modulator_config_t* c);
-
 /*@ assigns \nothing; */
 static inline int32_t svpwm_ticks_per_volt_q20(int32_t link_q16, int32_t last_q20);
 

@@ -104,35 +104,6 @@ TEST(Modulator, CentredHasAZeroWindowAtLowVoltage) {
   EXPECT_TRUE(zero);
 }
 
-TEST(Modulator, ConfigurationRangesIncludeTheirEndsOnly) {
-  const struct {
-    std::int16_t extended_config_t::* extended;
-    std::int16_t sampling_config_t::* sampling;
-    std::int16_t lowest, highest;
-  } cases[] = {
-      {nullptr, nullptr, 1500, 4700},
-      {&extended_config_t::window_min_ticks, nullptr, 500, 3000},
-      {&extended_config_t::window_max_ticks, nullptr, 1800, 4000},
-      {&extended_config_t::zero_ticks, nullptr, 0, 5000},
-      {nullptr, &sampling_config_t::settle_ticks, 400, 2500},
-      {nullptr, &sampling_config_t::burst_ticks, 50, 500},
-      {nullptr, &sampling_config_t::span_min_ticks, 100, 2000},
-      {nullptr, &sampling_config_t::last_tick, 5000, 9800},
-  };
-  for (const auto& k : cases) {
-    const auto valid = [&](int value) {
-      modulator_config_t c = default_modulator();
-      std::int16_t& field = k.extended ? c.extended.*k.extended : k.sampling ? c.sampling.*k.sampling : c.pulse_ticks;
-      field = static_cast<std::int16_t>(value);
-      return modulator_config_valid(&c);
-    };
-    EXPECT_TRUE(valid(k.lowest)) << k.lowest;
-    EXPECT_TRUE(valid(k.highest)) << k.highest;
-    EXPECT_FALSE(valid(k.lowest - 1)) << k.lowest;
-    EXPECT_FALSE(valid(k.highest + 1)) << k.highest;
-  }
-}
-
 // Nothing of what went before is left: neither whose turn it is in the alternating layout nor the DC link.
 TEST(Modulator, AfterAResetItBeginsLikeANewOne) {
   const modulator_config_t c = default_modulator();

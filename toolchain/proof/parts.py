@@ -37,7 +37,7 @@ CONTRACTS_OF_QMATH = (
 )
 BETWEEN = ("q_shr_round", "q_sat64", "q_limit", "q_follow", "q_follow_near", "q_follow_halves")
 PULSES = "svpwm_put_pulse,layout_for,most_of_both,longest_window,lay_out,own_zero,advance"
-PULSES += ",put_pair_first,put_pair_last,modulator_config_valid,alternate,modulator_step"
+PULSES += ",put_pair_first,put_pair_last,alternate,modulator_step"
 CONTRACTS_OF_LAYOUTS = tuple(f"{PULSES},{OF_LAYOUTS}".split(","))
 INLINED = "svpwm_fall_of,svpwm_put_order,put_nested_order,put_centred"
 # Intervals do not see in their code what these promise, and where EVA reads it the promise is taken. The part limits
