@@ -50,7 +50,7 @@ bool fit_plane(const int32_t* x, const int32_t* f, const int32_t* y, uint16_t n,
   const int32_t shared_q24 = fit_ratio(fit_dot(x, f, n), xx, 24);
   take_off(own, f, shared_q24, x, n);
   const int64_t own_square = fit_dot(own, own, n);
-  if (xx == 0 || own_square < q_shr64(fit_dot(f, f, n), 8)) return false;
+  if (xx == 0 || own_square < q_shr64(fit_dot(f, f, n), 10)) return false;
   out->offset_q24 = fit_ratio(fit_dot(own, y, n), own_square, 24);
   take_off(rest, y, out->offset_q24, f, n);
   out->slope_q24 = fit_ratio(fit_dot(x, rest, n), xx, 24);

@@ -41,6 +41,7 @@ typedef struct {
   uint16_t index;
   uint16_t turn;  // period of those in which the sums take turns
   int32_t tick;
+  int32_t most_q20;             // mean current that leaves the ripple room
   int32_t first_q20, step_q20;  // the first level, and by how much each is above the one before
   dead_time_config_t one_volt;  // the devices, if their drop were that
 } staircase_t;

@@ -16,6 +16,7 @@
 // instants lie symmetrically. The angle is not corrected again before the current is gone, for its turn would be taken
 // for motion. Between trains the shaft is held for 40 ms.
 
+#include "firmware/base/clear.h"
 #include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/interlock.h"
@@ -34,8 +35,6 @@
 #define PLACE_BAM 536870912uL  // 45 degrees
 #define MOVE_PERIODS 300
 #define SLOPE_STEPS 12  // periods for the current limit, or what half of the link drives
-
-static const int16_t signs[SEGMENTS] = {1, -1, -1, 1};
 
 int32_t map_level_q20(const map_t* m, uint16_t level) {
   return m->most_q20 / (int32_t)MAP_LEVELS * ((int32_t)level + 1);
@@ -69,10 +68,11 @@ static void predict(const drive_t* d, map_t* m) {
   m->position_bam = qc_add_sat(m->position_bam, q_shr(m->speed_q8, 8));
 }
 
+// + - - +, and every other train the mirror image.
+static uint16_t is_negative(const map_t* m, uint16_t segment) { return ((segment + 1u) / 2u + m->train) % 2u; }
+
 static void add_period(const drive_t* d, map_t* m, uint16_t segment) {
-  const uint16_t mirrored = (uint16_t)(m->train % 2u);
-  const bool negative = (signs[segment] < 0) != (mirrored != 0u);
-  map_group_t* const g = &m->group[m->level][2u * mirrored + (negative ? 1u : 0u)];
+  map_group_t* const g = &m->group[m->level][2u * (m->train % 2u) + is_negative(m, segment)];
   if (!commissioning_add_pair(d, &g->tensor)) return;
   q_gather(&g->position, m->position_bam);
   q_gather(&g->current, d->control.measured_q20.q);
@@ -94,12 +94,13 @@ static void follow(drive_t* d, map_t* m, int32_t target_q20) {
   d->control.references.feed_forward_q16 = q_div(m->plan[0] - last, d->model.yq_q30, 26);
 }
 
+// What a level has of WANTED_PERIODS, by the group of the last segment, which is filled last.
+static int32_t periods_done(const map_t* m) {
+  return m->group[m->level][MAP_GROUPS - 1u].tensor.count * ((int32_t)m->level + 1);
+}
+
 static bool level_complete(const map_t* m) {
-  if (m->train % (2u * PLACES) != 0u) return false;
-  for (uint16_t k = 0; k < MAP_GROUPS; k++) {
-    if (m->group[m->level][k].tensor.count < WANTED_PERIODS / ((int32_t)m->level + 1)) return m->train >= 600u;
-  }
-  return true;
+  return m->train % (2u * PLACES) == 0u && (periods_done(m) >= WANTED_PERIODS || m->train >= 600u);
 }
 
 static void run_train(drive_t* d, map_t* m) {
@@ -108,13 +109,13 @@ static void run_train(drive_t* d, map_t* m) {
   predict(d, m);
   if (segment < SEGMENTS) {
     if (usable(m, segment)) add_period(d, m, segment);
-    sign = ((m->train % 2u) != 0u) ? -signs[segment] : signs[segment];
+    sign = (is_negative(m, segment) != 0u) ? -1 : 1;
   }
   follow(d, m, sign * map_level_q20(m, m->level));
   m->tick = qc_add_sat(m->tick, 1);
   if (m->tick < SEGMENTS * m->segment + m->blank) return;
   m->pause = true;
-  m->judge = level_complete(m);
+  m->judge = m->train % (2u * PLACES) == 0u;
   m->tick = 0;
   commissioning.predicting = false;
   machine_model_follow(&d->model, 0);
@@ -131,19 +132,12 @@ static void move_on(const map_t* m) {
 static void empty_next_group(map_t* m) {
   const uint16_t n = (uint16_t)m->tick;
   if (m->level != 0u || m->train != 0u || n >= MAP_LEVELS * MAP_GROUPS) return;
-  map_group_t* const g = &m->group[n / MAP_GROUPS][n % MAP_GROUPS];
-  tensor_reset(&g->tensor);
-  g->position = 0;
-  g->current = 0;
+  clear(&m->group[n / MAP_GROUPS][n % MAP_GROUPS], sizeof(map_group_t));
 }
 
-// A level is as far as its last group is full.
 int32_t commissioning_map_done(const map_t* m) {
-  static const int16_t ends[MAP_LEVELS + 1u] = {0, 270, 585, 820, 1000};
-  if (m->level >= MAP_LEVELS) return ends[MAP_LEVELS];
-  const int32_t periods = m->group[m->level][MAP_GROUPS - 1u].tensor.count * ((int32_t)m->level + 1);
-  const int32_t begin = ends[m->level];
-  return begin + q_min(periods, WANTED_PERIODS) * (ends[m->level + 1u] - begin) / WANTED_PERIODS;
+  const int32_t quarter = (m->level < MAP_LEVELS) ? q_min(periods_done(m), WANTED_PERIODS) / (WANTED_PERIODS / 250) : 0;
+  return (int32_t)m->level * 250 + quarter;
 }
 
 static void begin_map(map_t* m, int32_t most_q20) {
@@ -170,7 +164,7 @@ static void next_level(map_t* m) {
 }
 
 static void begin(const drive_t* d, map_t* m) {
-  begin_map(m, drive.config.values.current_limit);
+  begin_map(m, commissioning.staircase.most_q20);
   m->segment = 0;
   m->pause = true;
   m->judge = false;
@@ -200,7 +194,7 @@ bool commissioning_map(drive_t* d) {
     return false;
   }
   if (m->judge) return false;
-  if (level_complete(m)) next_level(m);
+  if (m->lost || level_complete(m)) next_level(m);
   if (m->level >= MAP_LEVELS) return true;
   if (m->tick > length) begin_train(d);
   return false;

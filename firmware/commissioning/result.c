@@ -19,7 +19,7 @@ enum {
 #define EDGE_CHANGE_MAX_Q16 65536L  // 1 us
 #define TURN_MAX_BAM 357913941L     // 30 degrees: beyond that next to no saliency is left
 #define SALIENCY_SHARE 8            // nor with less than an eighth of it
-#define CURRENT_SHARE 10            // a level's current is met within a tenth
+#define CURRENT_SHARE 6             // a level's current is met within a sixth
 
 static commissioning_verdict_t worst(commissioning_verdict_t a, commissioning_verdict_t b) {
   return (a != VERDICT_USED) ? a : b;
@@ -80,7 +80,7 @@ static commissioning_verdict_t judge_staircase(const staircase_values_t* v, comm
   offer(r, ID_stator_resistance, winding, resistance);
   const bool big_drop = qc_abs_sat(v->drop_error_q16) > DROP_CHANGE_MAX_Q16;
   const commissioning_verdict_t drop = worst(worst(measured, quiet), big_drop ? VERDICT_NAMEPLATE : VERDICT_USED);
-  offer(r, ID_device_drop, qc_add_sat(p->device_drop, v->drop_error_q16), drop);
+  offer(r, ID_device_drop, q_max(qc_add_sat(p->device_drop, v->drop_error_q16), 0), drop);  // there is none below
   // Volts over the link are a share of the period of 100 us.
   const int32_t edge_q16 = qc_mul_sat(q_div(v->edge_error_q16, v->link_q16, 16), 100L * 65536L, 16);
   const bool big_edge = qc_abs_sat(edge_q16) > EDGE_CHANGE_MAX_Q16;
@@ -133,9 +133,17 @@ static bool has_lost_saliency(const map_values_t* v, int32_t saliency_q20) {
   return v->valid && (qc_sub_sat(v->lqq_q20, v->ldd_q20) < least_q20 || qc_abs_sat(v->turn_bam) > TURN_MAX_BAM);
 }
 
-// Of the level that has just been measured; the nameplate's saliency has to do, for the pauses still add to the other.
+static map_values_t at_level(const commissioning_t* c, const map_values_t* zero, uint16_t level) {
+  map_values_t v = map_solve(c->map.group[level], &c->model);
+  const map_values_t below = (level == 0u) ? *zero : map_solve(c->map.group[level - 1u], &c->model);
+  map_refer(&v, &below, map_level_q20(&c->map, level));
+  return v;
+}
+
+// Of the level that is being measured; the nameplate's saliency has to do, for the pauses still add to the other.
 bool commissioning_level_is_lost(const commissioning_t* c) {
-  const map_values_t v = map_solve(c->map.group[c->map.level], &c->model);
+  const map_values_t zero = unsaturated_solve(&c->unsaturated, &c->model);
+  const map_values_t v = at_level(c, &zero, c->map.level);
   return has_lost_saliency(&v, parameters.inductance_q - parameters.inductance_d);
 }
 
@@ -163,15 +171,10 @@ static void judge_map(const commissioning_t* c, const map_values_t* zero, commis
   const int32_t saliency_q20 = qc_sub_sat(zero->lqq_q20, zero->ldd_q20);
   offer(r, ID_map_current, parameters.current_limit, VERDICT_USED);
   uint16_t salient = 0;
-  map_values_t below = *zero;
   for (uint16_t k = 0; k < MAP_LEVELS; k++) {
-    const int32_t level_q20 = map_level_q20(&c->map, k);
-    const map_values_t measured = map_solve(c->map.group[k], &c->model);
-    map_values_t v = measured;
-    map_refer(&v, &below, level_q20);
-    judge_level(&v, zero, k, level_q20, unsaturated, r);
+    const map_values_t v = at_level(c, zero, k);
+    judge_level(&v, zero, k, map_level_q20(&c->map, k), unsaturated, r);
     if (k < c->map.levels && !has_lost_saliency(&v, saliency_q20)) salient = (uint16_t)(k + 1u);
-    below = measured;
   }
   const bool early = salient < MAP_LEVELS || c->map.most_q20 < parameters.current_limit;
   const bool ends = early && salient >= SALIENT_LEAST;

@@ -12,12 +12,13 @@
 // its vector. The link samples at the ends of the two windows tell by how much.
 //
 // Levels: from 40 % to the whole current limit, but from where the ripple changes no current's sign on (a phase has at
-// least half of i_d, so that is twice the ripple and a fifth to spare), to where the voltage leaves the pulses opposite
-// windows, and not beyond what a level may last without an overload: with the machine cool, a quarter of what the
-// overload's time constant bears. They have i_d > 0, which pulls the rotor to where it is held, up to half of where the
-// reluctance takes all of the magnet's torque, lambda/(Lq - Ld), for i_q has to hold the shaft. Only where that leaves
-// no room they have i_d < 0, which pushes the rotor away, up to the field-weakening limit, for the magnets' sake.
-// Resistance of winding and of devices cannot be told apart this way: the devices' is kept as it was given.
+// least half of i_d, so that is twice the ripple, and a fifth to spare where an eighth of the current is left for the
+// line), to where the voltage leaves the pulses opposite windows and the ripple does not trip, and not beyond what a
+// level may last without an overload: with the machine cool, a quarter of what the overload's time constant bears. They
+// have i_d > 0, which pulls the rotor to where it is held, up to half of where the reluctance takes all of the magnet's
+// torque, lambda/(Lq - Ld), for i_q has to hold the shaft. Only where that leaves no room they have i_d < 0, which
+// pushes the rotor away, up to the field-weakening limit, for the magnets' sake. Resistance of winding and of devices
+// cannot be told apart this way: the devices' is kept as it was given.
 
 #include "firmware/base/clear.h"
 #include "firmware/board/functions.h"
@@ -41,9 +42,9 @@ static int32_t ripple_q20(const drive_t* d) {
 // A level lasts 0.9 s: the square of its current, of that which may flow for ever, times 0.9 s over the time constant.
 static int32_t bearable_q20(void) {
   const int32_t lasting_q20 = board_lasting_current();
-  if (lasting_q20 == 0) return drive.config.values.current_limit;
+  if (lasting_q20 == 0) return INT32_MAX;
   const int32_t share_q8 = (int32_t)q_sqrt32((uint32_t)drive.config.values.overload_time * 18u);  // 2^16 / 4 / 900 ms
-  return q_min(drive.config.values.current_limit, qc_mul_sat(lasting_q20, q_max(share_q8, 256), 8));
+  return qc_mul_sat(lasting_q20, q_max(share_q8, 256), 8);
 }
 
 // Half of the current along d whose reluctance leaves the magnet no torque.
@@ -59,27 +60,25 @@ static int32_t opposite_q20(const drive_t* d) {
   return q_div(volts_q16, commissioning.model.rs_q24, 28);
 }
 
-// Where there is room for a line. sign: -1 or 1.
-static bool place_levels(const drive_t* d, int32_t sign, int32_t most) {
-  staircase_t* const s = &commissioning.staircase;
-  if (most <= 0) return false;
-  const int32_t least = q_max(most / 10 * 4, ripple_q20(d) / 10 * 24);
-  if (least > most / 4 * 3) return false;
-  s->first_q20 = sign * least;
-  s->step_q20 = sign * ((most - least) / (int32_t)(STAIRCASE_LEVELS - 1u));
-  return true;
-}
-
-// With no room on either side there are no levels, and nothing will be found.
+// With no room on either side there are no levels, and nothing will be found. The pulses take the current from its mean
+// to either side, saturated by somewhat more: to the trip at most, in the map as well.
 static void place(const drive_t* d) {
   staircase_t* const s = &commissioning.staircase;
-  const int32_t limit = q_min(bearable_q20(), opposite_q20(d));
-  s->first_q20 = 0;
-  s->step_q20 = 0;
+  const config_values_t* const v = &d->config.values;
+  const int32_t ripple = ripple_q20(d);
+  s->most_q20 = q_clamp(v->trip_current - ripple / 8 * 9, v->current_limit / 4, v->current_limit);
+  const int32_t limit = q_min(q_min(bearable_q20(), opposite_q20(d)), s->most_q20);
   // A rotor without saliency follows: nothing holds it.
-  if (!place_levels(d, 1, commissioning.uniform ? limit : q_min(limit, held_q20()))) {
-    (void)place_levels(d, -1, q_min(limit, d->config.values.weakening_limit));
+  int32_t most = commissioning.uniform ? limit : q_min(limit, held_q20());
+  int32_t sign = 1;
+  if (ripple > most / 2) {
+    most = q_min(limit, v->weakening_limit);
+    sign = -1;
   }
+  if (ripple > most / 2) sign = 0;
+  const int32_t least = q_max(most / 10 * 4, q_min(ripple / 10 * 24, most / 8 * 7));
+  s->first_q20 = sign * least;
+  s->step_q20 = sign * ((most - least) / (int32_t)(STAIRCASE_LEVELS - 1u));
 }
 
 // What one volt of drop in every phase gives along the d-axis, Q20.

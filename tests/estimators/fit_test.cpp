@@ -85,6 +85,24 @@ TEST(FitPlane, TellsWhatItLeavesOver) {
   EXPECT_LT(rms, 0.15);
 }
 
+// Levels over the upper eighth of a current tell slope and offset apart, over a fiftieth they do not.
+TEST(FitPlane, TakesALineOverAnEighthOfTheCurrent) {
+  for (const auto& [share, told] : {std::pair{0.125, true}, {0.02, false}}) {
+    Points p = staircase(0.387, 0.05, 0.0);
+    for (int k = 0; k < 14; ++k) {
+      const double current = 20.0 * (1.0 - share * k / 13.0);
+      p.x[k] = static_cast<std::int32_t>(std::lround(current * 1048576.0));
+      p.f[k] = static_cast<std::int32_t>(std::lround(4.0 / 3.0 * 1048576.0));
+      p.y[k] = static_cast<std::int32_t>(std::lround((0.387 * current + 0.05 * 4.0 / 3.0) * 1048576.0));
+    }
+    fit_plane_t fit;
+    ASSERT_EQ(fit_plane(p.x, p.f, p.y, 14, &fit), told) << share;
+    if (!told) continue;
+    EXPECT_NEAR(std::ldexp(fit.slope_q24, -24), 0.387, 1e-4);
+    EXPECT_NEAR(std::ldexp(fit.offset_q24, -24), 0.05, 2e-3);
+  }
+}
+
 TEST(FitPlane, RefusesRegressorsThatAreOne) {
   Points p = staircase(0.387, 0.05, 0.0);
   for (int k = 0; k < 14; ++k) p.x[k] = p.f[k] * 6;

@@ -35,8 +35,6 @@ TEST_F(CommissioningJudge, ALevelsInductancesAreThoseOfAMachine) {
   EXPECT_EQ(verdict("lqq_2"), VERDICT_NOT_PHYSICAL);
   measured(2, {2.5e-3, 7.0e-3, 0.08e-3}, 3.6);
   EXPECT_EQ(verdict("lqq_2"), VERDICT_NOT_PHYSICAL);
-  measured(2, saturated(2), 6.0);
-  EXPECT_EQ(verdict("lqq_2"), VERDICT_NOT_MEASURED) << "less than the current that was meant";
   // a saliency that has turned by more than 30 degrees is next to none
   measured(2, {5.8e-3, 6.2e-3, 0.6e-3}, 7.0);
   EXPECT_EQ(verdict("ldq_2"), VERDICT_NOT_PHYSICAL);
@@ -126,6 +124,20 @@ TEST_F(CommissioningJudge, ALevelHasLostItsSaliencyByAmountTurnOrSign) {
   EXPECT_TRUE(lost({4.655e-3, 4.9e-3, 0.0}));
   EXPECT_TRUE(lost({5.0e-3, 6.0e-3, 1.0e-3}));
   EXPECT_TRUE(lost({4.655e-3, 3.6e-3, 0.0}));
+}
+
+// A level's current is met within a sixth; the saliency is that of the current which was meant.
+TEST_F(CommissioningJudge, ALevelIsJudgedAtTheCurrentThatWasMeant) {
+  for (const auto& [current, good] : {std::pair{6.0, true}, {5.7, false}}) {
+    measured(2, saturated(2), current);
+    EXPECT_EQ(verdict("lqq_2"), good ? VERDICT_USED : VERDICT_NOT_MEASURED) << current;
+  }
+  c.map.level = 1;
+  constexpr Inductances kLittle = {4.655e-3, 5.1e-3, 0.0};
+  for (const auto& [current, lost] : {std::pair{7.0, false}, {6.0, true}}) {
+    measured(2, kLittle, current);
+    EXPECT_EQ(commissioning_level_is_lost(&c), lost) << current;
+  }
 }
 
 // What is shortened rests on all of its levels.

@@ -194,6 +194,24 @@ TEST_F(CommissioningStairs, TheMapGoesNoFurtherThanTheSaliency) {
   EXPECT_EQ(m.most_q20, parameters.current_limit / 4);
 }
 
+// A level that has lost its saliency is left before it is complete; one that has not is gone on with.
+TEST_F(CommissioningStairs, ALevelWithoutSaliencyIsLeftAtOnce) {
+  map_t& m = commissioning.map;
+  for (const bool lost : {false, true}) {
+    commissioning.tick = 0;
+    (void)commissioning_map(&drive);
+    commissioning.tick = 1;
+    m.level = 2;
+    m.train = 16;
+    m.tick = 701;
+    m.lost = lost;
+    for (map_group_t& g : m.group[2]) g.tensor.count = 200;
+    EXPECT_EQ(commissioning_map(&drive), lost);
+    EXPECT_EQ(m.levels, lost ? 2 : 4);
+    EXPECT_EQ(m.train, lost ? 0 : 17);
+  }
+}
+
 // The plan of the current is no steeper than half of the link drives, and a reversal has the time that this takes.
 TEST_F(CommissioningStairs, ATrainIsAsSlowAsTheLinkIsLow) {
   map_t& m = commissioning.map;
@@ -251,11 +269,12 @@ TEST_F(CommissioningStairs, TheReluctanceKeepsTheLevelsWhereTheShaftIsHeld) {
     EXPECT_NEAR(level(13), most, 0.01) << end;
     EXPECT_NEAR(level(0), std::copysign(std::max(0.4 * std::fabs(most), 2.4 * ripple()), most), 0.01) << end;
   }
-  for (const double most : {9.0, 0.0}) {
-    inside::config().values.weakening_limit = raw(most, 20);
-    begin();
-    EXPECT_NEAR(level(13), -most, 0.01);
-  }
+  inside::config().values.weakening_limit = raw(9.0, 20);
+  begin();
+  EXPECT_NEAR(level(13), -9.0, 0.01);
+  inside::config().values.weakening_limit = 0;
+  begin();
+  EXPECT_NEAR(level(13), 0.0, 1e-9) << "no room on either side";
 }
 
 // Beyond what the voltage of the resistance leaves of the shorter pulse a period has no two opposite windows.
@@ -279,17 +298,35 @@ TEST_F(CommissioningStairs, TheBackgroundLevelJudgesALevelOfTheMap) {
   EXPECT_FALSE(commissioning.map.lost) << "what was not measured has lost nothing";
 }
 
-// A line is drawn over the upper quarter of the current at least.
-TEST_F(CommissioningStairs, ALineNeedsAQuarterOfTheCurrent) {
-  for (const double share : {0.74, 0.76}) {
+// A line is drawn over the upper eighth of the current at least, where no phase's current changes its sign; without
+// that nothing is waited for, and what an earlier commissioning has summed up is none of this one.
+TEST_F(CommissioningStairs, ALineNeedsTwiceTheRipple) {
+  for (const auto& [share, least] : {std::pair{0.3, 0.72}, {0.45, 0.875}, {0.49, 0.875}, {0.51, 0.0}}) {
     SetUp();
     const double limit = real(parameters.current_limit, 20);
-    const double pulse = inside::config().modulator.pulse_ticks / 1e4;
-    const double link = real(inside::link_q16(), 16);
-    commissioning.model.yd_q30 = raw(share * limit / 2.4 / (link * 2.0 / 3.0 * pulse), 30);
+    inside::config().values.trip_current = raw(3.0 * limit, 20);
+    commissioning.model.yd_q30 = raw(share * limit / ripple() * real(commissioning.model.yd_q30, 30), 30);
+    stairs().level[0].periods = 2802;
     begin();
-    for (int n = 0; n < 200; ++n) (void)commissioning_climb(&drive);
-    EXPECT_NEAR(real(inside::reference_dq_q20().d, 20), share < 0.75 ? share * limit : 0.0, 0.01 * limit) << share;
+    if (least > 0.0) {
+      EXPECT_NEAR(level(0), least * limit, 0.01 * limit) << share;
+      EXPECT_NEAR(level(13), limit, 0.01 * limit) << share;
+    } else {
+      EXPECT_NEAR(level(13), 0.0, 1e-9);
+      EXPECT_FALSE(staircase_solve(&stairs(), &commissioning.model).valid);
+    }
+  }
+}
+
+// Staircase and map alike: somewhat more than the ripple is left to the trip, and a quarter of the limit at the least.
+TEST_F(CommissioningStairs, TheRippleDoesNotTrip) {
+  for (const auto& [trip, most] : {std::pair{18.0, 14.0}, {12.0, 12.0 - 9.0 / 8.0 * ripple()}, {4.0, 3.5}}) {
+    inside::config().values.trip_current = raw(trip, 20);
+    begin();
+    EXPECT_NEAR(level(13), most, 0.01) << trip;
+    commissioning.tick = 0;
+    (void)commissioning_map(&drive);
+    EXPECT_NEAR(real(commissioning.map.most_q20, 20), most, 0.01) << trip;
   }
 }
 

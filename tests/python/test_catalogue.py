@@ -120,7 +120,7 @@ def test_a_verdict_is_the_first_thing_that_motor_check_finds(native):
     first = next(line for line in said.stdout.splitlines() if line.startswith("WRONG"))
     verdict = catalogue.verdict("inrunner_12v", native)
     assert (verdict.word, first) == ("will not work", f"WRONG  {verdict.reason}")
-    assert catalogue.verdict("emrax_268", native).word == "refused"
+    assert catalogue.verdict("heavy_350kw", native).word == "refused"
 
 
 def test_a_motor_that_works_has_no_reason(native, monkeypatch):

@@ -173,12 +173,20 @@ def test_the_friction_is_of_the_right_size(found):
 
 
 @pytest.mark.parametrize(
-    ("motor", "angle"), [("B-SPM", 0.0), ("hub_36v", 0.0), ("servo_14nm", 0.0), ("servo_14nm", np.pi)]
+    ("motor", "angle"),
+    [
+        ("B-SPM", 0.0),
+        ("hub_36v", 0.0),
+        ("servo_14nm", 0.0),
+        ("servo_14nm", np.pi),
+        ("emrax_268", 0.0),
+    ],
 )
 def test_a_machine_without_saliency_is_found_as_a_whole(tmp_path, motor, angle):
     """Its profile makes it 10 % more resistance, 3 % less inductance and flux, 20 % more inertia than the nameplate.
 
-    Wherever its rotor stood: the last one's balances where the current pushes it from both sides, and swings long.
+    Wherever its rotor stood: that of servo_14nm balances where the current pushes it from both sides, and swings long.
+    The last one's Ld is above its Lq.
     """
     native = pytest.importorskip("stillspin._core", reason="the native module is not built")
     own = "bench" if motor == "B-SPM" else motor
@@ -231,6 +239,24 @@ def test_a_machine_that_is_not_held_or_salient_at_its_limit_is_found_as_a_whole(
     )
     assert found["magnet_flux"] == pytest.approx(told["magnet_flux"] * (1.0 + error["magnet_flux"]), rel=0.03)
     assert found["inertia"] == pytest.approx(told["inertia"] * (1.0 + error["inertia"]), rel=0.05)
+
+
+@pytest.mark.parametrize("motor", ["drone_48v", "racing_580v"])
+def test_a_machine_with_a_large_ripple_is_found_as_a_whole(tmp_path, motor):
+    """A third and half of the current limit, beside a trip at 1.3 times that; one's rotor turns by 30° in a train."""
+    native = pytest.importorskip("stillspin._core", reason="the native module is not built")
+    chosen = profile.load(motor, core.plant_schema(native), core.parameters(native), motor)
+    out = tmp_path / "params.toml"
+    command = [sys.executable, "-m", "stillspin", "commission", "--motor", motor, "--profile", motor]
+    command += ["--set", "solver.method=rk4", "--out", str(out)]
+    result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
+    assert result.returncode == 0, result.stderr
+    assert "24 of 24 values found" in result.stdout
+    found = tomllib.loads(out.read_text(encoding="utf-8"))["parameters"]
+    told, error = chosen.parameters, chosen.plant["parameter_error"]
+    for name, within in (("inductance_d", 0.03), ("inductance_q", 0.03), ("magnet_flux", 0.03), ("inertia", 0.05)):
+        assert found[name] == pytest.approx(told[name] * (1.0 + error[name]), rel=within), name
+    assert found["stator_resistance"] == pytest.approx(told["stator_resistance"] * (1.0 + error["resistance"]), rel=0.1)
 
 
 def test_a_saliency_that_ends_is_found_and_kept_while_the_shaft_is_slow(tmp_path):

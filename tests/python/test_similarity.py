@@ -96,6 +96,30 @@ def test_the_bench_is_as_bad_for_a_machine_of_another_size(native, scales):
             assert found[section][key] == (value * factor if factor != 1.0 else value), (section, key)
 
 
+def test_pulses_are_as_short_as_the_levels_of_the_staircase_need(native):
+    """With twice the ripple below what may flow along d; unless that is too short, or nothing tells the axis."""
+    told = {"current_limit": 14.0, "trip_current": 18.0, "weakening_limit": 11.2}
+
+    def pulse(**changes):
+        return followed(native, told, **changes).get("pulse_time", 42.0)
+
+    for share, expected in ((1.0, 42.0), (0.25, 18.0 / 1.5 / 2.2 / (200.0 * 1e-6 / 1.225e-3)), (0.1, 42.0)):
+        d = 4.9e-3 * share
+        assert pulse(inductance_d=d, inductance_q=1.3 * d) == pytest.approx(min(expected, 42.0), rel=1e-3), share
+        assert pulse(inductance_d=d, inductance_q=d) == 42.0
+    weakened = pulse(inductance_d=1.225e-3, inductance_q=12e-3)  # the reluctance takes the rotor away at 7.4 A
+    assert weakened == pytest.approx(11.2 / 2.2 / (200.0 * 1e-6 / 1.225e-3), rel=1e-3)
+
+
+def test_one_inductance_where_ld_is_hardly_above_lq():
+    plant = stated(inductance_d=4.0e-3, inductance_q=3.8e-3)
+    found = nameplate.following(plant, {})
+    assert found["inductance_d"] == found["inductance_q"] == pytest.approx(3.9)
+    for d, q in ((4.0e-3, 4.2e-3), (4.0e-3, 4.0e-3), (4.0e-3, 3.4e-3)):
+        found = nameplate.following(stated(inductance_d=d, inductance_q=q), {})
+        assert (found["inductance_d"], found["inductance_q"]) == pytest.approx((1e3 * d, 1e3 * q))
+
+
 def test_a_segment_of_the_polarity_test_is_as_long_as_the_drives():
     source = "".join((ROOT / f"estimators/polarity.{ending}").read_text(encoding="utf-8") for ending in "ch")
     said = {name: int(number) for name, number in re.findall(r"#define (\w+) (\d+)", source)}

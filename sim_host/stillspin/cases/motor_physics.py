@@ -47,9 +47,9 @@ def _turned(motor: Described, share: float) -> Finding:
     current, speed = motor.told("if_current"), motor.told("if_speed")
     carried = 1.5 * motor.plant("machine", "pole_pairs") * motor.plant("machine", "magnet_flux") * current
     words = (
-        f"Lq and Ld differ by {share:.1%} of their sum: at rest the angle is not known, and no load is held there; "
-        f"{current:.3g} A turn the shaft, against up to {carried:.2g} N m, to {speed:.0f} rpm, where the EMF shows it: "
-        "command no less"
+        f"Lq and Ld differ by {abs(share):.1%} of their sum: at rest the angle is not known, and no load is held "
+        f"there; {current:.3g} A turn the shaft, against up to {carried:.2g} N m, to {speed:.0f} rpm, "
+        "where the EMF shows it: command no less"
     )
     linked = motor.plant("machine", "magnet_flux") / motor.plant("machine", "inductance_q")
     if current > linked:
@@ -91,10 +91,13 @@ def speed(motor: Described) -> Finding:
     """The speed that the link and field weakening allow without load."""
     volts = motor.plant("link", "source_voltage") / math.sqrt(3.0) * motor.told("voltage_use") / 100.0
     flux = motor.plant("machine", "magnet_flux")
-    weakened = max(flux - motor.plant("machine", "inductance_d") * motor.told("weakening_limit"), 1e-9)
+    weakened = flux - motor.plant("machine", "inductance_d") * motor.told("weakening_limit")
     pairs, limit = motor.plant("machine", "pole_pairs"), motor.told("speed_limit")
-    base, fastest = (volts / linked / pairs * 30.0 / math.pi for linked in (max(flux, 1e-9), weakened))
-    words = f"the EMF takes the link's voltage at {base:.0f} rpm, with weakening_limit at {fastest:.0f} rpm"
+    base, fastest = (
+        volts / linked / pairs * 30.0 / math.pi if linked > 0.0 else math.inf for linked in (flux, weakened)
+    )
+    words = f"the EMF takes the link's voltage at {base:.0f} rpm, "
+    words += f"with weakening_limit at {fastest:.0f} rpm" if weakened > 0.0 else "weakening_limit leaves nothing of it"
     if fastest < limit:
         ways = f"lower it to {fastest:.0f} rpm, or raise weakening_limit or the link's voltage"
         return Finding("top speed", False, f"{words}; speed_limit is {limit:.0f} rpm: {ways}")

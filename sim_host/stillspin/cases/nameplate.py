@@ -73,6 +73,7 @@ def following(plant: core.Plant, stated: Mapping[str, float]) -> dict[str, float
         value = plant.get(row.section, {}).get(row.key)
         if value is not None and row.parameter not in stated:
             found[row.parameter] = round(float(value) * row.factor, row.digits)
+    found |= open_loop.one_inductance(found)
     if "observer_noise" in found:
         found["observer_noise"] *= similarity.noise(plant)
     limit = stated.get("current_limit")

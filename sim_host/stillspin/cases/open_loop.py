@@ -26,6 +26,21 @@ def share(inductance_d: float, inductance_q: float) -> float:
     return (inductance_q - inductance_d) / (inductance_q + inductance_d)
 
 
+def one_inductance(told: Mapping[str, float]) -> dict[str, float]:
+    """The mean for both axes of a machine whose Ld is hardly above its Lq: the drive takes no Ld above Lq.
+
+    Args:
+        told: what follows from the machine.
+
+    Returns:
+        Nothing where Lq is the larger one, or so much smaller that the difference counts.
+    """
+    d, q = (told.get(name, 0.0) for name in ("inductance_d", "inductance_q"))
+    if not 0.0 < q < d or share(q, d) > SALIENCY_LEAST:
+        return {}
+    return dict.fromkeys(("inductance_d", "inductance_q"), round((d + q) / 2.0, 9))
+
+
 def spin_most(volts: float, flux: float, pairs: float) -> float:
     """The speed of the commissioning's spin, rpm, up to which its pulses alternate, with or without saliency."""
     return rpm(_SPIN_SHARE * volts / flux / pairs)

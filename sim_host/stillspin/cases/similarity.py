@@ -30,6 +30,9 @@ _SWING = 2.1  # the current loop over the frequency at which EMF, inductance and
 _SWING_TESTED = 2.8  # where a segment of the polarity test is the shortest
 _LOOP_END = 10400.0  # rad/s times three half periods and the divider's (firmware/config/rules.c)
 _NOISE_MOST = 4.0
+_LEVELS_ABOVE = 2.2  # times the ripple, and a tenth to spare
+_TRIP_SHARE = 1.5  # of which the ripple has the rest
+_PULSE_LEAST = 24.0  # us, with the usual settle time
 _DIGITS = 3  # that count; one more is kept
 _NEEDED = {
     "machine": ("pole_pairs", "inductance_d", "inductance_q", "magnet_flux", "rated_peak_current"),
@@ -260,7 +263,8 @@ def _spin(asked: _Asked, name: str) -> float:
     currents is off by a share of the ripple.
     """
     size, found = asked.size, _up_to_top_speed(asked, name)
-    most = open_loop.spin_most(size.volts, size.magnet_flux, size.pole_pairs)
+    pulses = asked.told.get("pulse_time", _pulse_time(asked, "pulse_time")) / asked.default("pulse_time")
+    most = pulses * open_loop.spin_most(size.volts, size.magnet_flux, size.pole_pairs)
     while found < most * _SPIN_LEAST:
         found *= 2.0
     return min(found, most, asked.told.get("speed_limit", found))
@@ -323,6 +327,25 @@ def _drop_band(asked: _Asked, name: str) -> float:
     return default * min(_power(ratio), 1.0)
 
 
+def _pulse_time(asked: _Asked, name: str) -> float:
+    """Shorter where the ripple leaves commissioning no levels of i_d (firmware/commissioning/staircase.c).
+
+    Twice the ripple is the least of them. The most is where the magnet still holds the rotor, or the limit of the field
+    weakening, and what the ripple leaves to the trip.
+    """
+    size, default = asked.size, asked.default(name)
+    limit, trip, weakening = (
+        asked.told.get(each, math.inf) for each in ("current_limit", "trip_current", "weakening_limit")
+    )
+    if open_loop.share(size.inductance_d, size.inductance_q) < open_loop.SALIENCY_LEAST:
+        return default
+    held = size.magnet_flux / (2.0 * (size.inductance_q - size.inductance_d))
+    most = min(max(min(limit, held), weakening), trip / _TRIP_SHARE)
+    ripple = 2.0 / 3.0 * size.volts / size.inductance_d * 1e-6  # A, of a pulse of 1 µs
+    enough = most / (_LEVELS_ABOVE * ripple)
+    return default if enough < _PULSE_LEAST else min(enough, default)
+
+
 def _synchronism_floor(asked: _Asked, name: str) -> float:
     """What the sensors' noise looks like; no less than the default in volts of the board's size, for the devices."""
     noise = asked.default(name) * _power(asked.size.noise_volts / REFERENCE.noise_volts)
@@ -344,6 +367,7 @@ RULES: dict[str, _Law] = {
     "speed_alpha": _speed_alpha,
     "current_bandwidth": _current_bandwidth,
     "synchronism_floor": _synchronism_floor,
+    "pulse_time": _pulse_time,
 }
 """By parameter; what a motor's file states of one goes before."""
 
