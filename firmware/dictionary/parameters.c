@@ -9,22 +9,42 @@
 
 parameters_t parameters;
 
-// A number of the list, decimals without a point, as a word: thirteen bits of a step. What no step has does not
-// compile.
-static const int16_t steps[8] = {1, 10, 100, 1000, 1024};
-#define OF(value, step) ((value) % (step) == 0 && (value) / (step) >= -4096L && (value) / (step) < 4096L)
-#define STEP(value) \
-  (OF(value, 1L) ? 0 : OF(value, 10L) ? 1 : OF(value, 100L) ? 2 : OF(value, 1000L) ? 3 : OF(value, 1024L) ? 4 : 5)
-#define SIZE(step) ((step) == 0 ? 1L : (step) == 1 ? 10L : (step) == 2 ? 100L : (step) == 3 ? 1000L : 1024L)
-#define WORD(value) ((int16_t)((value) / SIZE(STEP(value)) * 8L + STEP(value)))
+// A number of the list, decimals without a point, as a word: thirteen bits of a step; a minimum as an octet: five bits,
+// from LEAST on. What no step has does not compile.
+static const int32_t steps[8] = {1, 10, 25, 100, 1000, 1024, 1200, 100000};
+#define LEAST (-15)
+#define OF(value, step, half) ((value) % (step) == 0 && (value) / (step) >= -(half) + 1L && (value) / (step) <= (half))
+#define STEP(value, half)         \
+  (OF(value, 1L, half)        ? 0 \
+   : OF(value, 10L, half)     ? 1 \
+   : OF(value, 25L, half)     ? 2 \
+   : OF(value, 100L, half)    ? 3 \
+   : OF(value, 1000L, half)   ? 4 \
+   : OF(value, 1024L, half)   ? 5 \
+   : OF(value, 1200L, half)   ? 6 \
+   : OF(value, 100000L, half) ? 7 \
+                              : 8)
+#define SIZE(step)       \
+  ((step) == 0   ? 1L    \
+   : (step) == 1 ? 10L   \
+   : (step) == 2 ? 25L   \
+   : (step) == 3 ? 100L  \
+   : (step) == 4 ? 1000L \
+   : (step) == 5 ? 1024L \
+   : (step) == 6 ? 1200L \
+                 : 100000L)
+#define STEPS(value, half) ((value) / SIZE(STEP(value, half)))
+#define WORD(value) ((int16_t)(STEPS(value, 4095L) * 8L + STEP(value, 4095L)))
+#define OCTET(value) ((uint16_t)((STEPS(value, 16L) - LEAST) * 8L + STEP(value, 16L)))
 
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
-  typedef char name##_fits[(STEP(minimum) < 5 && STEP(maximum) < 5 && STEP(initial) < 5 && (decimals) <= 6) ? 1 : -1];
+  typedef char name##_fits                                                                 \
+      [(STEP(minimum, 16L) < 8 && STEP(maximum, 4095L) < 8 && STEP(initial, 4095L) < 8 && (decimals) <= 6) ? 1 : -1];
 #include "firmware/dictionary/all_parameters.h"
 #undef PARAMETER
 
 #define PARAMETER(id, name, unit, q, decimals, minimum, maximum, initial, access, meaning) \
-  {id, q, decimals, PARAMETER_##access, UNIT_##unit, WORD(minimum), WORD(maximum), WORD(initial)},
+  {id, PARAMETER_##access, UNIT_##unit, q, decimals, OCTET(minimum), WORD(maximum), WORD(initial)},
 static const parameter_info_t table[] = {
 #include "firmware/dictionary/all_parameters.h"
 };
@@ -46,14 +66,20 @@ packed_text_t parameter_meaning(const parameter_info_t* p) { return text_of(p, F
 uint16_t parameter_q(const parameter_info_t* p) { return unit_q(p->unit, p->q); }
 uint16_t parameter_decimals(const parameter_info_t* p) { return unit_decimals(p->unit, p->decimals); }
 
-static int32_t raw_of(const parameter_info_t* p, int16_t word) {
+// So many steps; `step`: which.
+static int32_t raw_of(const parameter_info_t* p, int32_t count, int16_t step) {
   static const int32_t tens[] = {1L, 10L, 100L, 1000L, 10000L, 100000L, 1000000L};
-  return q_div(q_shr(word, 3) * steps[word & 7], tens[p->decimals], p->q);
+  return q_div(count * steps[step & 7], tens[p->decimals], p->q);
 }
 
-int32_t parameter_minimum(const parameter_info_t* p) { return raw_of(p, p->minimum); }
-int32_t parameter_maximum(const parameter_info_t* p) { return raw_of(p, p->maximum); }
-int32_t parameter_initial(const parameter_info_t* p) { return raw_of(p, p->initial); }
+static int32_t raw_of_word(const parameter_info_t* p, int16_t word) { return raw_of(p, q_shr(word, 3), word); }
+
+int32_t parameter_minimum(const parameter_info_t* p) {
+  return raw_of(p, (int32_t)(p->minimum >> 3) + LEAST, (int16_t)p->minimum);
+}
+
+int32_t parameter_maximum(const parameter_info_t* p) { return raw_of_word(p, p->maximum); }
+int32_t parameter_initial(const parameter_info_t* p) { return raw_of_word(p, p->initial); }
 
 bool parameter_allows(const parameter_info_t* p, int32_t raw) {
   return raw >= parameter_minimum(p) && raw <= parameter_maximum(p);

@@ -44,12 +44,13 @@ typedef enum { PARAMETER_STOPPED = 0, PARAMETER_ALWAYS = 1 } parameter_access_t;
 typedef enum { SET_OK = 0, SET_UNKNOWN = 1, SET_RANGE = 2, SET_RUNNING = 3 } parameter_result_t;
 
 typedef struct {
-  uint16_t id;
-  uint16_t q : 5;                     // in the formats; in user's units parameter_q
-  uint16_t decimals : 3;              // likewise parameter_decimals
-  uint16_t access : 1;                // parameter_access_t
-  uint16_t unit : 5;                  // unit_t
-  int16_t minimum, maximum, initial;  // packed: parameter_minimum and the others have them
+  uint16_t id : 10;
+  uint16_t access : 1;       // parameter_access_t
+  uint16_t unit : 5;         // unit_t
+  uint16_t q : 5;            // in the formats; in user's units parameter_q
+  uint16_t decimals : 3;     // likewise parameter_decimals
+  uint16_t minimum : 8;      // packed: parameter_minimum and the others have them
+  int16_t maximum, initial;  // likewise
 } parameter_info_t;
 
 /// Those of the edition, in the order of the list.
