@@ -86,8 +86,9 @@ def blocks(items: list[str], start: int) -> tuple[list[int], list[int]]:
 
 def pack(strings: list[str], names: int = 0) -> str:
     """The C file with the texts, the last of which are names."""
-    said = [word_code.words(string) for string in strings]
-    word_code.phrases(said)
+    joints = [" "] * (len(strings) - names) + ["_"] * names
+    said = [word_code.words(string, joint) for string, joint in zip(strings, joints, strict=True)]
+    word_code.phrases(said, joints)
     entries = word_code.entries(said)
     letters = Counter(letter for word in {*entries, *(w for text in said for w in text)} for letter in word)
     letters[word_code.END] = max(len(entries), *letters.values()) + 1  # the first code

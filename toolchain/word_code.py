@@ -2,7 +2,8 @@
 
 Code words are as long as what they stand for is rare (D. Huffman, "A Method for the Construction of Minimum-Redundancy
 Codes", Proc. IRE 40(9), 1952), those of a length follow each other, so that a table of how many have each length is all
-that reading needs. Between two words no space is said. Words that stand side by side often are an entry of their own.
+that reading needs. Between two words their text's joint, a space or an underscore, is not said; a number is a word as
+well. Words that stand side by side often are an entry of their own.
 """
 
 import heapq
@@ -14,26 +15,26 @@ from itertools import count, pairwise
 
 END = ""  # of a text, and of a word, in the place of an entry or of a letter
 SPELLED = "\1"  # in the place of an entry: a word's letters follow
-WORD = re.compile(r"[A-Za-z]+|.")
+WORD = re.compile(r"[A-Za-z0-9]+|.")
 LETTER_BITS = 4.5  # of a letter of the dictionary, about
 LONGEST = 16  # bits of a code, as firmware/text/packed_text.c takes them
 WORTH = 4  # bits that an entry of several words has to save
 
 
-def words(text: str) -> list[str]:
-    """The words and other characters of a text, without a space between two words."""
+def words(text: str, joint: str = " ") -> list[str]:
+    """The words and other characters of a text, without the joint between two words."""
     found = WORD.findall(text)
     around = zip(["", *found], found, [*found[1:], ""], strict=False)
-    return [word for before, word, behind in around if word != " " or not _joins(before, behind)]
+    return [word for before, word, behind in around if word != joint or not _joins(before, behind)]
 
 
-def joined(first: str, second: str) -> str:
+def joined(first: str, second: str, joint: str = " ") -> str:
     """What two entries that follow each other say."""
-    return f"{first} {second}" if _joins(first, second) else first + second
+    return first + joint + second if _joins(first, second) else first + second
 
 
 def _joins(first: str, second: str) -> bool:
-    return first[-1:].isalpha() and second[:1].isalpha()
+    return first[-1:].isalnum() and second[:1].isalnum()
 
 
 def _bits(all_of_them: int, *counts: int) -> float:
@@ -41,8 +42,9 @@ def _bits(all_of_them: int, *counts: int) -> float:
     return all_of_them * math.log2(all_of_them) - sum(n * math.log2(n) for n in counts if n)
 
 
-def _saving(first: str, second: str, together: int, single: Mapping[str, int], total: int) -> float:
-    """Bits saved by an entry for two that stand together so often."""
+def _saving(pair: tuple[str, str, str], together: int, single: Mapping[str, int], total: int) -> float:
+    """Bits saved by an entry for two that stand together so often, behind them their joint."""
+    first, second, _ = pair
 
     def entry(text: str) -> float:
         return LETTER_BITS * (len(text) + 1)
@@ -50,23 +52,28 @@ def _saving(first: str, second: str, together: int, single: Mapping[str, int], t
     rest = single[first] - together, single[second] - together
     gone = sum(entry(text) for text, n in zip((first, second), rest, strict=True) if n == 0)
     before = _bits(total, single[first], single[second])
-    return before - _bits(total - together, *rest, together) + gone - entry(joined(first, second))
+    return before - _bits(total - together, *rest, together) + gone - entry(joined(*pair))
 
 
-def phrases(texts: list[list[str]]) -> None:
-    """Makes of words that stand together often one, in place, the most saving first."""
+def phrases(texts: list[list[str]], joints: list[str]) -> None:
+    """Makes of words that stand together often one, in place, the most saving first. Each text has its joint."""
     while True:
         single = Counter(word for text in texts for word in text)
-        pairs = Counter(pair for text in texts for pair in pairwise(text) if pair[0] != pair[1])
+        pairs = Counter(
+            (*pair, joint)
+            for text, joint in zip(texts, joints, strict=True)
+            for pair in pairwise(text)
+            if pair[0] != pair[1]
+        )
         total = single.total() + len(texts)
-        savings = {pair: _saving(*pair, n, single, total) for pair, n in pairs.items() if n > 1}
+        savings = {pair: _saving(pair, n, single, total) for pair, n in pairs.items() if n > 1}
         best = max(savings, key=lambda pair: (savings[pair], pair), default=None)
         if best is None or savings[best] < WORTH:
             return
-        for text in texts:
+        for text, joint in zip(texts, joints, strict=True):
             at = 0
             while at + 1 < len(text):
-                if (text[at], text[at + 1]) == best:
+                if (text[at], text[at + 1], joint) == best:
                     text[at : at + 2] = [joined(*best)]
                 at += 1
 

@@ -81,9 +81,7 @@ void put_number(octet_writer_t* w, const parameter_info_t* parameter, int32_t ra
 
 void put_value(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw) {
   put_number(w, parameter, raw);
-  if (packed_is_empty(parameter_unit(parameter))) return;
-  put_u8(w, ' ');
-  put_packed(w, parameter_unit(parameter));
+  put_unit(w, parameter_unit(parameter));
 }
 
 void put_range(octet_writer_t* w, const parameter_info_t* parameter) {

@@ -9,6 +9,7 @@
 
 #include "firmware/base/octets.h"
 #include "firmware/interfaces/service.h"
+#include "firmware/text/packed_text.h"
 
 #if defined(__cplusplus)
 extern "C" {
@@ -41,7 +42,7 @@ extern service_t* const edition_status_updates[];
 
 /// A line about how something is, for people.
 typedef struct {
-  const char* title;
+  packed_text_t title;
   void (*put)(octet_writer_t* w);
 } status_line_t;
 /// Those of the edition, NULL behind the last one (editions/).

@@ -116,22 +116,22 @@ static void put_item(octet_writer_t* w, board_words_t word) {
   put_packed(w, SAY_semicolon);
 }
 
-static void put_number(octet_writer_t* w, board_words_t word, int32_t value, uint16_t q, const char* unit) {
+static void put_number(octet_writer_t* w, board_words_t word, int32_t value, uint16_t q, packed_text_t unit) {
   put_message(w, CATALOGUE_BOARD, (uint16_t)word);
   put_u8(w, ' ');
   put_fixed(w, value, q, 0);
-  put_text(w, unit);
+  put_packed(w, unit);
 }
 
 static void put_board(octet_writer_t* w) {
   if (parameters.emergency_stop != 0) put_item(w, hal_digital_io_emergency() ? BOARD_PRESSED : BOARD_RELEASED);
   if (parameters.precharge_voltage != 0) put_item(w, board.relay ? BOARD_CHARGED : BOARD_CHARGING);
   if (parameters.brake_voltage != 0) put_item(w, board.braking ? BOARD_BRAKING : BOARD_NOT_BRAKING);
-  if ((known_beside & KNOWN_HEAT_SINK) != 0u) put_number(w, BOARD_HEAT_SINK, board.heat_sink_q8, 8, " C; ");
+  if ((known_beside & KNOWN_HEAT_SINK) != 0u) put_number(w, BOARD_HEAT_SINK, board.heat_sink_q8, 8, SAY_celsius);
   if (parameters.speed_input != 0) put_item(w, (board_words_t)((uint16_t)BOARD_INPUT_OFF + (uint16_t)board.input));
   if (parameters.overload_current == 0) put_item(w, BOARD_OVERLOAD_UNWATCHED);
   if (parameters.overload_current < 0 && parameters.rated_current == 0) put_item(w, BOARD_RATED_UNTOLD);
-  put_number(w, BOARD_LIMIT_IN_USE, interlock_share_q15 * 25 / 8, 10, " %");
+  put_number(w, BOARD_LIMIT_IN_USE, interlock_share_q15 * 25 / 8, 10, SAY_percent);
 }
 
-const status_line_t board_line = {"board", put_board};
+const status_line_t board_line = {SAY_title_board, put_board};

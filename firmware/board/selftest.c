@@ -86,4 +86,4 @@ static void put_selftest(octet_writer_t* w) {
   if (hal_watchdog_caused_reset()) put_item(w, &items, WORD_WATCHDOG);
 }
 
-const status_line_t selftest_line = {"self-test", put_selftest};
+const status_line_t selftest_line = {SAY_title_self_test, put_selftest};

@@ -11,18 +11,12 @@
 
 static can_node_state_t now;  // one moment for all lines
 
-static void put_count(octet_writer_t* w, uint16_t count, packed_text_t what) {
-  put_unsigned(w, count);
-  put_packed(w, what);
-}
-
 static void line_bus(octet_writer_t* w) {
   put_packed(w, SAY_bus_node);
   put_unsigned(w, now.node);
   if (now.rate_kbit > 0) {
     put_packed(w, SAY_at);
-    put_unsigned(w, (uint32_t)now.rate_kbit);
-    put_packed(w, SAY_kbit_s);
+    put_count(w, (uint32_t)now.rate_kbit, SAY_kbit_s);
   }
   put_packed(w, SAY_colon);
   put_message(w, CATALOGUE_CAN, (uint16_t)now.bus.state);

@@ -20,8 +20,7 @@ static void show_commissioning(void) {
   put_message(w, CATALOGUE_COMMISSIONING, (uint16_t)outcome);
   if (outcome == COMMISSIONING_RUNNING) {
     put_packed(w, SAY_comma);
-    put_unsigned(w, (uint32_t)drive_commissioning_progress() / 10u);
-    put_packed(w, SAY_percent_of);
+    put_count(w, (uint32_t)drive_commissioning_progress() / 10u, SAY_percent_of);
     put_message(w, CATALOGUE_PHASE, (uint16_t)drive_commissioning_phase());
   }
   if (outcome == COMMISSIONING_DONE || outcome == COMMISSIONING_PARTLY) put_unsaved(w);

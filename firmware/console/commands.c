@@ -95,8 +95,7 @@ void command_version(const words_of_line_t* a) {
   octet_writer_t* const w = line_begin();
   put_text(w, FIRMWARE_NAME);
   put_packed(w, SAY_protocol);
-  put_unsigned(w, LINK_PROTOCOL);
-  put_packed(w, SAY_edition);
+  put_count(w, LINK_PROTOCOL, SAY_edition);
   put_text(w, edition_name);
   line_end();
 }

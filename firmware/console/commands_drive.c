@@ -33,8 +33,7 @@ static bool wait_for_run(uint16_t step) {
   if (drive.state == DRIVE_RUN) {
     octet_writer_t* const w = line_begin();
     put_packed(w, SAY_running_after);
-    put_unsigned(w, waited);
-    put_packed(w, SAY_ms);
+    put_count(w, waited, SAY_ms);
     line_end();
     return false;
   }

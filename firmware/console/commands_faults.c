@@ -38,10 +38,8 @@ static bool list_faults(uint16_t step) {
   fault_record_t f;
   octet_writer_t* const w = line_begin();
   if (step == 0u) {
-    put_unsigned(w, fault_history_total());
-    put_packed(w, SAY_since_power_on_which_was);
-    put_unsigned(w, drive_time_ms() / 1000u);
-    put_packed(w, SAY_s_ago_the_newest_first);
+    put_count(w, fault_history_total(), SAY_since_power_on_which_was);
+    put_count(w, drive_time_ms() / 1000u, SAY_s_ago_the_newest_first);
   } else if (fault_history_read((uint16_t)(step - 1u), &f)) {
     put_fault(w, &f);
   } else {

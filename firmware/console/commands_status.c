@@ -94,9 +94,10 @@ void put_unsaved(octet_writer_t* w) {
   if (unsaved == 0u) return;
   if (unsaved < UNSAVED_UNKNOWN) {
     put_packed(w, SAY_semicolon);
-    put_unsigned(w, unsaved);
+    put_count(w, unsaved, SAY_not_saved_save_keeps_them);
+  } else {
+    put_packed(w, SAY_not_saved_the_last_save_failed);
   }
-  put_packed(w, (unsaved < UNSAVED_UNKNOWN) ? SAY_not_saved_save_keeps_them : SAY_not_saved_the_last_save_failed);
 }
 
 static void status_parameters(octet_writer_t* w) {
@@ -109,17 +110,17 @@ static void status_parameters(octet_writer_t* w) {
   put_unsaved(w);
 }
 
-const status_line_t state_line = {"state", status_state};
-const status_line_t speed_line = {"speed", put_speeds};
-const status_line_t current_line = {"current", status_current};
-const status_line_t dc_link_line = {"DC link", status_link};
-const status_line_t limits_line = {"limits", status_limits};
-const status_line_t fault_line = {"fault", status_fault};
-const status_line_t parameters_line = {"parameters", status_parameters};
+const status_line_t state_line = {TEXT_SIGNAL_NAME_state, status_state};
+const status_line_t speed_line = {TEXT_SIGNAL_NAME_speed, put_speeds};
+const status_line_t current_line = {SAY_title_current, status_current};
+const status_line_t dc_link_line = {SAY_title_dc_link, status_link};
+const status_line_t limits_line = {SAY_title_limits, status_limits};
+const status_line_t fault_line = {TEXT_SIGNAL_NAME_fault, status_fault};
+const status_line_t parameters_line = {SAY_title_parameters, status_parameters};
 
 static bool show_status(uint16_t step) {
   octet_writer_t* const w = line_begin();
-  put_text(w, edition_status_lines[step]->title);
+  put_packed(w, edition_status_lines[step]->title);
   put_spaces_to(w, COLUMN);
   edition_status_lines[step]->put(w);
   line_end();

@@ -195,7 +195,7 @@ static void tell(void) {
   octet_writer_t* const w = line_begin();
   put_text(w, "\r\n! ");
   if (faulted) {
-    put_text(w, "fault: ");
+    put_packed(w, SAY_fault);
     put_message(w, CATALOGUE_FAULT, (uint16_t)fault.fault);
   } else {
     put_packed(w, SAY_nothing_was_heard_for_link_timeout);

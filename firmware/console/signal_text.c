@@ -1,5 +1,6 @@
 #include "firmware/console/signal_text.h"
 
+#include "firmware/dictionary/units.h"
 #include "firmware/drive/signals.h"
 #include "firmware/text/text.h"
 
@@ -29,9 +30,7 @@ void put_signal(octet_writer_t* w, uint16_t place) {
 
 void put_signal_value(octet_writer_t* w, const signal_info_t* s, int32_t raw) {
   put_fixed(w, raw, signal_q(s), signal_decimals(s));
-  if (packed_is_empty(signal_unit(s))) return;
-  put_u8(w, ' ');
-  put_packed(w, signal_unit(s));
+  put_unit(w, signal_unit(s));
 }
 
 void put_signal_row(octet_writer_t* w, uint16_t place) {

@@ -33,3 +33,9 @@ uint16_t unit_scales(void) {
 void put_quantity(octet_writer_t* w, int32_t raw, uint16_t unit, uint16_t q, uint16_t decimals) {
   put_fixed(w, raw, unit_q(unit, q), unit_decimals(unit, decimals));
 }
+
+void put_unit(octet_writer_t* w, packed_text_t unit) {
+  if (packed_is_empty(unit)) return;
+  put_u8(w, ' ');
+  put_packed(w, unit);
+}

@@ -34,6 +34,8 @@ uint16_t unit_decimals(uint16_t unit, uint16_t decimals);
 /// A number that changes when a scale does.
 uint16_t unit_scales(void);
 static inline packed_text_t unit_text(uint16_t unit) { return (packed_text_t)(TEXT_UNIT_A + unit); }
+/// A space and the unit, nothing of a number that has none.
+void put_unit(octet_writer_t* w, packed_text_t unit);
 /// The number in user's units, without the unit.
 void put_quantity(octet_writer_t* w, int32_t raw, uint16_t unit, uint16_t q, uint16_t decimals);
 

@@ -6,12 +6,9 @@
 
 static void status_port(octet_writer_t* w) {
   const link_errors_t e = link_errors();
-  put_unsigned(w, (uint32_t)e.port.framing + e.port.overrun + e.port.breaks + e.port.lost);
-  put_packed(w, SAY_disturbances);
-  put_unsigned(w, (uint32_t)e.records.damaged + e.records.too_long + e.records.broken_off);
-  put_packed(w, SAY_damaged_records);
-  put_unsigned(w, e.events_dropped);
-  put_packed(w, SAY_events_dropped);
+  put_count(w, (uint32_t)e.port.framing + e.port.overrun + e.port.breaks + e.port.lost, SAY_disturbances);
+  put_count(w, (uint32_t)e.records.damaged + e.records.too_long + e.records.broken_off, SAY_damaged_records);
+  put_count(w, e.events_dropped, SAY_events_dropped);
 }
 
-const status_line_t serial_line = {"serial", status_port};
+const status_line_t serial_line = {SAY_title_serial, status_port};

@@ -27,43 +27,25 @@ static uint16_t shift_of(const signal_info_t* s) {
   return (uint16_t)(q_max16((int16_t)(s->q + whole), 15) - 15);
 }
 
-static scope_setup_t draft(void) {
-  scope_setup_t s = *scope_setup_in_force();
-  if (s.count > 0u) return s;
-  s.decimation = 1;
-  s.pretrigger = SCOPE_DEPTH / 4u;
-  s.mode = SCOPE_SINGLE;
-  s.edge = SCOPE_AT_ONCE;
-  s.hysteresis = SCOPE_BY_SPAN;
-  return s;
+// The signal's place; false, and said, when there is none.
+static bool read_signal(const word_t* typed, uint16_t* place) {
+  *place = signal_find(typed);
+  if (*place == SIGNAL_NONE) suggest(SUGGEST_SIGNAL, typed);
+  return *place != SIGNAL_NONE;
 }
 
-// Everything but the channels has been looked at where it was read.
-static void apply(const scope_setup_t* s) {
-  if (scope_setup(s)) {
-    line_of(SAY_set_scope_arm_starts_it);
-  } else {
-    line_refused(SAY_first_scope_channels_signal);
-  }
-}
-
-void scope_set_channels(const words_of_line_t* a) {
-  scope_setup_t s = draft();
+bool scope_set_channels(const words_of_line_t* a, scope_setup_t* s) {
   if (a->count < 2u || a->count > 1u + SCOPE_CHANNELS) {
     line_refused(SAY_scope_channels_takes_one_to_four_signals);
-    return;
+    return false;
   }
-  s.count = (uint16_t)(a->count - 1u);
-  for (uint16_t k = 0; k < s.count; k++) {
-    const uint16_t place = signal_find(&a->word[k + 1u]);
-    if (place == SIGNAL_NONE) {
-      suggest(SUGGEST_SIGNAL, &a->word[k + 1u]);
-      return;
-    }
-    s.channel[k].signal = place;
-    s.channel[k].shift = shift_of(signal_info(place));
+  s->count = (uint16_t)(a->count - 1u);
+  for (uint16_t k = 0; k < s->count; k++) {
+    scope_channel_t* const c = &s->channel[k];
+    if (!read_signal(&a->word[k + 1u], &c->signal)) return false;
+    c->shift = shift_of(signal_info(c->signal));
   }
-  apply(&s);
+  return true;
 }
 
 static void refuse_level(const word_t* typed, const signal_info_t* signal) {
@@ -95,38 +77,29 @@ static bool read_level(const words_of_line_t* a, uint16_t* k, const signal_info_
   return true;
 }
 
-void scope_set_trigger(const words_of_line_t* a) {
-  scope_setup_t s = draft();
+bool scope_set_trigger(const words_of_line_t* a, scope_setup_t* s) {
   if (a->count == 2u && word_is(a, 1, SAY_edge_now)) {
-    s.edge = SCOPE_AT_ONCE;
-    apply(&s);
-    return;
+    s->edge = SCOPE_AT_ONCE;
+    return true;
   }
   uint16_t edge = 0;
   while (edge < EDGES && !word_is(a, 2, scope_edge_text(edge))) edge++;
   if (a->count < 4u || edge == EDGES || edge == SCOPE_AT_ONCE) {
     line_refused(SAY_scope_trigger_signal_rising_falling_either_a);
-    return;
+    return false;
   }
-  s.trigger = signal_find(&a->word[1]);
-  if (s.trigger == SIGNAL_NONE) {
-    suggest(SUGGEST_SIGNAL, &a->word[1]);
-    return;
-  }
-  s.edge = (scope_edge_t)edge;
-  s.hysteresis = SCOPE_BY_SPAN;
-  const signal_info_t* const signal = signal_info(s.trigger);
+  if (!read_signal(&a->word[1], &s->trigger)) return false;
+  s->edge = (scope_edge_t)edge;
+  s->hysteresis = SCOPE_BY_SPAN;
+  const signal_info_t* const signal = signal_info(s->trigger);
   uint16_t k = 3;
-  if (!read_level(a, &k, signal, &s.level)) return;
+  if (!read_level(a, &k, signal, &s->level)) return false;
   if (k < a->count && edge < SCOPE_AT_ONCE) {
-    if (!read_level(a, &k, signal, &s.hysteresis)) return;
-    s.hysteresis = q_max(s.hysteresis, 0);
+    if (!read_level(a, &k, signal, &s->hysteresis)) return false;
+    s->hysteresis = q_max(s->hysteresis, 0);
   }
-  if (k < a->count) {
-    line_refused(SAY_the_level_is_in_the_signal_s);
-  } else {
-    apply(&s);
-  }
+  if (k < a->count) line_refused(SAY_the_level_is_in_the_signal_s);
+  return k >= a->count;
 }
 
 static bool read_whole(const word_t* typed, uint16_t least, uint16_t most, uint16_t* value) {
@@ -146,30 +119,23 @@ bool scope_whole(const words_of_line_t* a, uint16_t least, uint16_t most, uint16
     if (k + 1u < a->count) put_u8(w, ' ');
   }
   put_packed(w, SAY_is_not_a_whole_number_in);
-  put_unsigned(w, least);
-  put_packed(w, SAY_to);
-  put_unsigned(w, most);
-  put_packed(w, SAY_nothing_changed);
+  put_count(w, least, SAY_to);
+  put_count(w, most, SAY_nothing_changed);
   line_end_refused();
   return false;
 }
 
-void scope_set_every(const words_of_line_t* a) {
-  scope_setup_t s = draft();
-  if (scope_whole(a, 1, UINT16_MAX, &s.decimation)) apply(&s);
+bool scope_set_every(const words_of_line_t* a, scope_setup_t* s) {
+  return scope_whole(a, 1, UINT16_MAX, &s->decimation);
 }
 
-void scope_set_before(const words_of_line_t* a) {
-  scope_setup_t s = draft();
-  if (scope_whole(a, 0, SCOPE_DEPTH - 1u, &s.pretrigger)) apply(&s);
+bool scope_set_before(const words_of_line_t* a, scope_setup_t* s) {
+  return scope_whole(a, 0, SCOPE_DEPTH - 1u, &s->pretrigger);
 }
 
-void scope_set_mode(const words_of_line_t* a) {
-  scope_setup_t s = draft();
-  s.mode = word_is(a, 1, SAY_auto) ? SCOPE_AUTO : SCOPE_SINGLE;
-  if (a->count != 2u || (s.mode == SCOPE_SINGLE && !word_is(a, 1, SAY_single))) {
-    line_refused(SAY_scope_mode_single_or_scope_mode_auto);
-    return;
-  }
-  apply(&s);
+bool scope_set_mode(const words_of_line_t* a, scope_setup_t* s) {
+  s->mode = word_is(a, 1, SAY_auto) ? SCOPE_AUTO : SCOPE_SINGLE;
+  const bool is_mode = a->count == 2u && (s->mode == SCOPE_AUTO || word_is(a, 1, SAY_single));
+  if (!is_mode) line_refused(SAY_scope_mode_single_or_scope_mode_auto);
+  return is_mode;
 }

@@ -19,14 +19,11 @@ static void put_state(octet_writer_t* w) {
   put_packed(w, SAY_scope);
   put_message(w, CATALOGUE_SCOPE, (uint16_t)status.state);
   put_packed(w, SAY_comma);
-  put_unsigned(w, status.recorded);
-  put_packed(w, SAY_records);
+  put_count(w, status.recorded, SAY_records);
   if (status.trigger_at == SCOPE_NOWHERE) return;
   put_packed(w, SAY_trigger_in_record);
-  put_unsigned(w, status.trigger_at);
-  put_packed(w, SAY_at);
-  put_unsigned(w, status.trigger_time_ms);
-  put_packed(w, SAY_ms);
+  put_count(w, status.trigger_at, SAY_at);
+  put_count(w, status.trigger_time_ms, SAY_ms);
 }
 
 static void put_trigger(octet_writer_t* w, const scope_setup_t* s) {
@@ -46,10 +43,8 @@ static void put_trigger(octet_writer_t* w, const scope_setup_t* s) {
     put_packed(w, SAY_edge_now);
   }
   put_packed(w, SAY_every);
-  put_unsigned(w, s->decimation);
-  put_packed(w, SAY_before);
-  put_unsigned(w, s->pretrigger);
-  put_packed(w, (s->mode == SCOPE_AUTO) ? SAY_mode_auto : SAY_mode_single);
+  put_count(w, s->decimation, SAY_before);
+  put_count(w, s->pretrigger, (s->mode == SCOPE_AUTO) ? SAY_mode_auto : SAY_mode_single);
 }
 
 static void put_channels(octet_writer_t* w, const scope_setup_t* s) {
@@ -103,10 +98,11 @@ static bool print(uint16_t step) {
   return true;
 }
 
-void scope_print(const words_of_line_t* a) {
+bool scope_print(const words_of_line_t* a, scope_setup_t* s) {
   const scope_state_t state = scope_status().state;
+  (void)s;
   stride = 16;
-  if (a->count > 1u && !scope_whole(a, 1, UINT16_MAX, &stride)) return;
+  if (a->count > 1u && !scope_whole(a, 1, UINT16_MAX, &stride)) return false;
   if (state != SCOPE_DONE && state != SCOPE_IDLE) {
     line_refused(SAY_the_scope_is_recording_scope_stop_ends);
   } else if (scope_status().recorded == 0u) {
@@ -114,4 +110,5 @@ void scope_print(const words_of_line_t* a) {
   } else {
     console_run(print, false);
   }
+  return false;
 }

@@ -18,8 +18,7 @@ static void put_report(octet_writer_t* w) {
   const parameter_info_t* const first = parameter_by_id(r->first_refused);
   if (first == NULL) return;
   put_packed(w, SAY_semicolon);
-  put_unsigned(w, r->refused);
-  put_packed(w, SAY_refused_now_at_their_default);
+  put_count(w, r->refused, SAY_refused_now_at_their_default);
   put_packed(w, SAY_colon);
   put_packed(w, parameter_name(first));
   if (r->refused > 1u) put_packed(w, SAY_and_more);
@@ -66,4 +65,4 @@ static void status_store(octet_writer_t* w) {
   put_unsigned(w, store_report()->sequence);
 }
 
-const status_line_t store_line = {"store", status_store};
+const status_line_t store_line = {SAY_title_store, status_store};

@@ -128,26 +128,14 @@ static void end_load(store_state_t result) {
 }
 
 static void load(void) {
+  static const uint16_t nothing_found[] = {[SCAN_EMPTY] = STORE_EMPTY,
+                                           [SCAN_DAMAGED] = STORE_DAMAGED,
+                                           [SCAN_FOREIGN] = STORE_FOREIGN,
+                                           [SCAN_FAILED] = STORE_ABSENT};
   const scan_result_t result = scan_step();
   if (result == SCAN_GOES_ON) return;
   report = *scan_report();
-  switch (result) {
-    case SCAN_FOUND:
-      end_load(take_over());
-      break;
-    case SCAN_EMPTY:
-      end_load(STORE_EMPTY);
-      break;
-    case SCAN_DAMAGED:
-      end_load(STORE_DAMAGED);
-      break;
-    case SCAN_FOREIGN:
-      end_load(STORE_FOREIGN);
-      break;
-    default:
-      end_load(STORE_ABSENT);
-      break;
-  }
+  end_load((result == SCAN_FOUND) ? take_over() : (store_state_t)nothing_found[result]);
 }
 
 // Which slot may be written, and what of the other one must be kept.

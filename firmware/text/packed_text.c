@@ -35,7 +35,8 @@ static void skip_text(uint32_t* at) {
 }
 
 packed_reader_t packed_reader(packed_text_t text) {
-  packed_reader_t r = {(uint32_t)packed_starts[text / PACKED_BLOCK] << 4, 0, NO_WORD, 0, 0};
+  packed_reader_t r = {(uint32_t)packed_starts[text / PACKED_BLOCK] << 4, 0, NO_WORD, 0, 0, ' '};
+  if (text >= (packed_text_t)PACKED_FIRST_NAME) r.joint = '_';
   for (uint16_t k = text % PACKED_BLOCK; k > 0u; k--) skip_text(&r.text);
   return r;
 }
@@ -58,7 +59,10 @@ static uint16_t begin_word(packed_reader_t* r) {
   return next_letter(r);
 }
 
-static bool is_letter(uint16_t c) { return text_small(c) >= (uint16_t)'a' && text_small(c) <= (uint16_t)'z'; }
+// A letter or a digit.
+static bool is_of_word(uint16_t c) {
+  return (text_small(c) >= (uint16_t)'a' && text_small(c) <= (uint16_t)'z') || (c >= '0' && c <= '9');
+}
 
 uint16_t packed_next(packed_reader_t* r) {
   uint16_t c = r->held;
@@ -66,9 +70,9 @@ uint16_t packed_next(packed_reader_t* r) {
   if (c == 0u && r->word_is != NO_WORD) c = next_letter(r);
   if (c == 0u) {
     c = begin_word(r);
-    if (is_letter(c) && is_letter(r->last)) {
+    if (is_of_word(c) && is_of_word(r->last)) {
       r->held = c;
-      c = (uint16_t)' ';
+      c = r->joint;
     }
   }
   r->last = c;
@@ -82,6 +86,11 @@ void put_packed(octet_writer_t* w, packed_text_t text) {
     put_u8(w, c);
     c = packed_next(&r);
   }
+}
+
+void put_count(octet_writer_t* w, uint32_t count, packed_text_t what) {
+  put_unsigned(w, count);
+  put_packed(w, what);
 }
 
 bool packed_is_empty(packed_text_t text) {

@@ -2,8 +2,8 @@
 //
 // A character of a string takes a whole word of the C28x's memory. toolchain/pack_text.py takes the texts from the
 // lists that people edit, numbers them (text_numbers.h, made by the build) and packs them to a fifth
-// (toolchain/word_code.py). Where two words follow each other a space is between them. A word that is said once is in
-// no dictionary: its letters are in the text.
+// (toolchain/word_code.py). Where two words or numbers follow each other a space is between them, in a name an
+// underscore. A word that is said once is in no dictionary: its letters are in the text.
 
 #ifndef STILLSPIN_FIRMWARE_TEXT_PACKED_TEXT_H
 #define STILLSPIN_FIRMWARE_TEXT_PACKED_TEXT_H
@@ -30,8 +30,9 @@ typedef struct {
   uint32_t text;  // bits
   uint32_t word;  // the same, in the dictionary
   uint16_t word_is;
-  uint16_t last;  // character
-  uint16_t held;  // a word's first letter, for which a space came
+  uint16_t last;   // character
+  uint16_t held;   // a word's first letter, for which the joint came
+  uint16_t joint;  // between two words
 } packed_reader_t;
 
 packed_reader_t packed_reader(packed_text_t text);
@@ -41,6 +42,9 @@ uint16_t packed_next(packed_reader_t* r);
 
 /// Writes a text out.
 void put_packed(octet_writer_t* w, packed_text_t text);
+
+/// A number, and the text behind it.
+void put_count(octet_writer_t* w, uint32_t count, packed_text_t what);
 
 bool packed_is_empty(packed_text_t text);
 

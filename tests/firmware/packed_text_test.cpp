@@ -39,6 +39,7 @@ struct Row {
 #define HELP(command, number, text) {TEXT_HELP_##command##_##number, text},
 #define PHRASE(name, text) {SAY_##name, text},
 const Row kListed[] = {
+#include "firmware/board/phrase_list.h"
 #include "firmware/can/phrase_list.h"
 #include "firmware/commissioning/phrase_list.h"
 #include "firmware/config/phrase_list.h"

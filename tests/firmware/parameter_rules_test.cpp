@@ -30,7 +30,7 @@ class ParameterRules : public Drive {
 
 TEST_F(ParameterRules, AParameterThatIsNotInTheTableIsNotSet) {
   parameter_info_t strange = *parameter_info(0);
-  strange.id = 65535;
+  strange.id = 1023;
   std::uint16_t octets[80];
   octet_writer_t why = octet_writer(octets, 80);
   EXPECT_EQ(action_set(&strange, 4, &why), ANSWER_UNKNOWN);

@@ -151,8 +151,8 @@ const store_report_t* store_report(void) {
 }
 
 static void put_any(octet_writer_t* w) { put_packed(w, (packed_text_t)any_up_to((uint16_t)PACKED_TEXTS - 1u)); }
-const status_line_t board_line = {"board", put_any};
-const status_line_t selftest_line = {"self-test", put_any};
+const status_line_t board_line = {SAY_title_board, put_any};
+const status_line_t selftest_line = {SAY_title_self_test, put_any};
 
 uint16_t hal_irq_disable(void) { return any_u16; }
 void hal_irq_restore(uint16_t state) { (void)state; }

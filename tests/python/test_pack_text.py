@@ -70,14 +70,15 @@ class Unpacked:
         bits = self.at(at)
         return [self.word(bits) for _ in range(count)]
 
-    def texts(self, count: int) -> list[str]:
+    def texts(self, count: int, names: int = 0) -> list[str]:
         found: list[str] = []
         for k, at in enumerate(self.starts):
             bits = self.at(at)
             for _ in range(min(pack_text.BLOCK, count - pack_text.BLOCK * k)):
                 text = ""
+                joint = " " if len(found) < count - names else "_"
                 for entry in self.to_the_end(bits, self.entry_codes):
-                    text = word_code.joined(text, self.word(bits) if entry == 1 else self.dictionary[entry])
+                    text = word_code.joined(text, self.word(bits) if entry == 1 else self.dictionary[entry], joint)
                 found.append(text)
         return found
 
@@ -110,7 +111,8 @@ def test_unpacking_gives_the_texts_back(edition: str) -> None:
     needless = compose.needless_texts(whole, ROOT)
     kept = ["" if name in needless else text for name, text in pack_text.texts().items()]
     source = compose.made(whole)[compose.TEXTS]
-    assert Unpacked(source).texts(len(kept)) == kept
+    names = sum(1 for name in pack_text.texts() if pack_text.NAME.match(name))
+    assert Unpacked(source).texts(len(kept), names) == kept
     words = sum(len(found.split()) for found in re.findall(r"\{([^}]*)\};", source))
     assert words < 0.21 * sum(len(text) + 1 for text in kept), "about a fifth of the characters"
 
@@ -124,6 +126,7 @@ def test_unpacking_gives_the_texts_back(edition: str) -> None:
             " ",
             "  a  b ",
             "a1b",
+            "a 1 b2 3_c",
             "_a_b_",
             "a - b",
             "an (e)",
@@ -135,8 +138,9 @@ def test_unpacking_gives_the_texts_back(edition: str) -> None:
         * 3,
     ],
 )
-def test_what_is_between_two_words_is_kept(texts: list[str]) -> None:
-    assert Unpacked(pack_text.pack(texts)).texts(len(texts)) == texts
+@pytest.mark.parametrize("names", [0, 2])
+def test_what_is_between_two_words_is_kept(texts: list[str], names: int) -> None:
+    assert Unpacked(pack_text.pack(texts, names)).texts(len(texts), names) == texts
 
 
 def test_a_code_longer_than_the_reader_takes_is_refused():
@@ -162,8 +166,14 @@ def test_a_code_word_is_as_long_as_its_symbol_is_rare() -> None:
 
 def test_words_that_stand_together_often_are_an_entry() -> None:
     texts = [["the", "power", "stage", other] for other in "abcdefghij"]
-    word_code.phrases(texts)
+    word_code.phrases(texts, [" "] * 10)
     assert texts[0] == ["the power stage", "a"]
+
+
+def test_words_of_a_name_and_of_a_sentence_are_two_entries() -> None:
+    texts = [["power", "stage", str(other)] for other in range(2000)]
+    word_code.phrases(texts, [" "] * 1000 + ["_"] * 1000)
+    assert (texts[0], texts[1000]) == (["power stage", "0"], ["power_stage", "1000"])
 
 
 @pytest.mark.parametrize("text", ["10 µs", "line\\n"])

@@ -16,7 +16,7 @@ from image.elf import ObjectFile, Section
 
 TABLE = re.compile(r"\s\**(\w+)\[\w*\]\s*=\s*\{")
 POINTER = 4  # octets of the Cortex-M3
-SIZES = {"bool": 2, "uint16_t": 2, "int16_t": 2, "uint32_t": 4, "int32_t": 4}
+SIZES = {"bool": 2, "uint16_t": 2, "packed_text_t": 2, "int16_t": 2, "uint32_t": 4, "int32_t": 4}
 
 
 def reached(objects: list[ObjectFile], name: str) -> set[str] | None:

@@ -43,7 +43,7 @@ int32_t torque_limit_share(void) { return (parameters.speed_input != 0) ? INTERL
 
 static void put_share(octet_writer_t* w) {
   put_fixed(w, torque_limit_share() * 25 / 8, 10, 0);
-  put_text(w, " % of current_limit by the voltage at the speed input");
+  put_packed(w, SAY_percent_of_current_limit);
 }
 
-const status_line_t torque_limit_line = {"torque", put_share};
+const status_line_t torque_limit_line = {SAY_torque, put_share};
