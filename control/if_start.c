@@ -73,11 +73,11 @@ void if_start_renew(if_start_t* s, const if_start_config_t* c) {
 
 static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
   const dq_t emf_q16 = {qc_sub_sat(voltage_q16.d, s->drop_q16), voltage_q16.q};
-  s->mean_q16.d = q_follow(s->mean_q16.d, emf_q16.d, MEAN_SHIFT);
-  s->mean_q16.q = q_follow(s->mean_q16.q, emf_q16.q, MEAN_SHIFT);
+  s->mean_q16.d = qc_follow(s->mean_q16.d, emf_q16.d, MEAN_SHIFT);
+  s->mean_q16.q = qc_follow(s->mean_q16.q, emf_q16.q, MEAN_SHIFT);
   const int32_t seen = q_mul_add_sat(s->per_emf_q4.d, emf_q16.d, s->per_emf_q4.q, emf_q16.q, 20);
-  s->rotor_bpp = q_follow(s->rotor_bpp, seen, c->filter_shift);
-  s->mean_bpp = q_follow(s->mean_bpp, s->rotor_bpp, MEAN_SHIFT);
+  s->rotor_bpp = qc_follow(s->rotor_bpp, seen, c->filter_shift);
+  s->mean_bpp = qc_follow(s->mean_bpp, s->rotor_bpp, MEAN_SHIFT);
   const int32_t fast = qc_sub_sat(s->rotor_bpp, s->mean_bpp);
   const int32_t shift = q_clamp(q_sat64((int64_t)fast * c->damping_periods), -SHIFT_MAX_BAM, SHIFT_MAX_BAM);
   s->angle_bam = s->vector_bam - (uint32_t)shift;

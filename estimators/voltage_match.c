@@ -19,15 +19,19 @@ static bool hurries(machine_trim_t* t, int32_t speed_squared_q16, int32_t share_
   return true;
 }
 
+static void bound_resistance(machine_model_t* m) {
+  m->trim.rs_q24 = q_clamp(m->trim.rs_q24, -m->nominal_rs_q24 / 2, m->nominal_rs_q24);
+}
+
 static void bound(machine_model_t* m) {
   machine_trim_t* const t = &m->trim;
-  t->rs_q24 = q_clamp(t->rs_q24, -m->nominal_rs_q24 / 2, m->nominal_rs_q24);
+  bound_resistance(m);
   t->psi_q16 = q_clamp(t->psi_q16, -m->emf_q16 / 8 * 3, m->emf_q16 / 8 * 3);
 }
 
 void voltage_match_resistance(machine_model_t* m, int32_t more_q24) {
   m->trim.rs_q24 = qc_add_sat(m->trim.rs_q24, more_q24);
-  bound(m);
+  bound_resistance(m);
 }
 
 void voltage_match_step(machine_model_t* m, const regression_t* r, int32_t w_q30, int32_t share_q30) {

@@ -172,20 +172,11 @@ static void note_results(const hal_adc_window_t* window) {
   replay_note_results(results, REPLAY_RESULTS);
 }
 
-// While something is recorded or played.
-static void replay_window(hal_adc_window_t* window) {
+void hal_adc_read_window(hal_adc_window_t* window) {
   if (replay_plays()) {
     play_results(window);
     return;
   }
   take_results(window);
-  note_results(window);
-}
-
-void hal_adc_read_window(hal_adc_window_t* window) {
-  if (replay_is_off()) {
-    take_results(window);
-  } else {
-    replay_window(window);
-  }
+  if (!replay_is_off()) note_results(window);
 }

@@ -20,13 +20,14 @@ static bool march(uint32_t first, uint32_t second, uint16_t left) {
 }
 
 static bool march_pair(uint32_t a, uint32_t b, uint16_t ground) {
-  const uint16_t inverse = (uint16_t)~ground;
+  bool kept = true;
   target_write16(a, ground);
   target_write16(b, ground);
-  bool kept = march(a, b, ground);
-  kept = march(a, b, inverse) && kept;
-  kept = march(b, a, ground) && kept;
-  kept = march(b, a, inverse) && kept;
+  for (uint16_t element = 0u; element < 4u; element++) {
+    const bool up = element < 2u;
+    const uint16_t left = (element & 1u) == 0u ? ground : (uint16_t)~ground;
+    kept = march(up ? a : b, up ? b : a, left) && kept;
+  }
   return target_read16(a) == ground && target_read16(b) == ground && kept;
 }
 

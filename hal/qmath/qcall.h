@@ -17,6 +17,7 @@ int32_t qc_add_sat(int32_t a, int32_t b);
 int32_t qc_sub_sat(int32_t a, int32_t b);
 int32_t qc_abs_sat(int32_t x);
 int32_t qc_shl_sat(int32_t x, unsigned n);
+int32_t qc_follow(int32_t a, int32_t b, unsigned n);
 int32_t qc_mul(int32_t a, int32_t b, unsigned shift);
 int32_t qc_mul_sat(int32_t a, int32_t b, unsigned shift);
 int32_t qc_over(int32_t num, q_inverse_t inverse, unsigned shift);

@@ -67,7 +67,7 @@ static void take_flux(drive_t* d) {
   m->trim.psi_q16 = 0;
   if (flying_start.emf_q16 < FLUX_EMF_Q16) return;  // a pair that fits has a speed that fits its size
   const int32_t nominal_q30 = m->map.points[0].yqq_q30;
-  const int32_t now_q30 = nominal_q30 + q_mul(nominal_q30, m->trim.yqq_q24, 24);
+  const int32_t now_q30 = nominal_q30 + qc_mul(nominal_q30, m->trim.yqq_q24, 24);
   const int32_t emf_q16 = qc_mul_sat(flying_start.emf_q16, q_div(nominal_q30, now_q30, 24), 24);
   const int32_t off_q16 = qc_sub_sat(q_div(emf_q16, w_q30, 30), m->emf_q16);
   if (qc_abs_sat(off_q16) < m->emf_q16 / 8) return;
@@ -207,7 +207,7 @@ static start_phase_t step_catch(drive_t* d) {
     s->flux_due = false;
     return START_GOES_ON;
   }
-  s->stray = q_follow(s->stray, d->position.avv.error_bam, 4);
+  s->stray = qc_follow(s->stray, d->position.avv.error_bam, 4);
   if (starting.tick < CATCH_PERIODS || !start_has_exclusive_slot(d)) return START_GOES_ON;
   if (qc_abs_sat(s->stray) >= STRAY_MAX_BAM) return try_again(d);
   start_run(d, d->position.avv.observer.angle_bam, d->position.avv.observer.speed_bpp);
