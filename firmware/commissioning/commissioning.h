@@ -64,6 +64,7 @@ typedef struct {
   int32_t blank;     // of it, in which the current settles
   int32_t step_q20;  // A by which the current may change in a period
   bool pause;
+  bool kept;            // the first level's sums are those of the second one, with half of the currents
   volatile bool judge;  // the background level owes whether the level has a saliency
   volatile bool lost;   // it has none; written before `judge`
   int32_t plan[2];      // i_q reference: that of now, and the one before it

@@ -128,11 +128,16 @@ static void move_on(const map_t* m) {
 }
 
 // What was summed up in an earlier commissioning goes piece by piece in the first pause: all of it at once is too much
-// for an interrupt.
+// for an interrupt. With half of the currents what was the first level is the second one.
 static void empty_next_group(map_t* m) {
-  const uint16_t n = (uint16_t)m->tick;
-  if (m->level != 0u || m->train != 0u || n >= MAP_LEVELS * MAP_GROUPS) return;
-  clear(&m->group[n / MAP_GROUPS][n % MAP_GROUPS], sizeof(map_group_t));
+  if (m->level != 0u || m->train != 0u || m->tick >= (int32_t)(MAP_LEVELS * MAP_GROUPS)) return;
+  const uint16_t n = (uint16_t)(MAP_LEVELS * MAP_GROUPS - 1u - (uint16_t)m->tick);
+  map_group_t* const g = &m->group[n / MAP_GROUPS][n % MAP_GROUPS];
+  if (m->kept && n / MAP_GROUPS == 1u) {
+    *g = m->group[0][n % MAP_GROUPS];
+  } else {
+    clear(g, sizeof *g);
+  }
 }
 
 int32_t commissioning_map_done(const map_t* m) {
@@ -156,6 +161,7 @@ static void next_level(map_t* m) {
   m->level++;
   if (!m->lost) return;
   if (m->level <= SALIENT_LEAST && m->most_q20 > drive.config.values.current_limit / 4) {
+    m->kept = m->level > 1u;
     begin_map(m, m->most_q20 / 2);
   } else {
     m->levels = (uint16_t)(m->level - 1u);
@@ -167,6 +173,7 @@ static void begin(const drive_t* d, map_t* m) {
   begin_map(m, commissioning.staircase.most_q20);
   m->segment = 0;
   m->pause = true;
+  m->kept = false;
   m->judge = false;
   m->plan[0] = 0;
   m->plan[1] = 0;

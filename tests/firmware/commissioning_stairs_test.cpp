@@ -194,6 +194,34 @@ TEST_F(CommissioningStairs, TheMapGoesNoFurtherThanTheSaliency) {
   EXPECT_EQ(m.most_q20, parameters.current_limit / 4);
 }
 
+// With half of the currents a first level that had a saliency is the second one, and its sums stay.
+TEST_F(CommissioningStairs, TheLevelThatWasGoodIsKept) {
+  map_t& m = commissioning.map;
+  for (const int lost : {0, 1}) {
+    commissioning.tick = 0;
+    (void)commissioning_map(&drive);
+    commissioning.tick = 1;
+    for (int level = 0; level < 4; ++level) {
+      for (int k = 0; k < 4; ++k) m.group[level][k].tensor.count = m.group[level][k].current = 100 * level + k + 1;
+    }
+    m.level = static_cast<std::uint16_t>(lost);
+    m.train = 16;
+    m.tick = 701;
+    m.lost = true;
+    EXPECT_FALSE(commissioning_map(&drive));
+    ASSERT_EQ(m.level, 0);
+    ASSERT_EQ(m.most_q20, commissioning.staircase.most_q20 / 2);
+    for (int n = 0; n < 16; ++n) (void)commissioning_map(&drive);
+    for (int level = 0; level < 4; ++level) {
+      for (int k = 0; k < 4; ++k) {
+        const int expected = lost == 1 && level == 1 ? k + 1 : 0;
+        EXPECT_EQ(m.group[level][k].tensor.count, expected) << lost << level << k;
+        EXPECT_EQ(m.group[level][k].current, expected) << lost << level << k;
+      }
+    }
+  }
+}
+
 // A level that has lost its saliency is left before it is complete; one that has not is gone on with.
 TEST_F(CommissioningStairs, ALevelWithoutSaliencyIsLeftAtOnce) {
   map_t& m = commissioning.map;

@@ -343,7 +343,7 @@ def _pulse_time(asked: _Asked, name: str) -> float:
     most = min(max(min(limit, held), weakening), trip / _TRIP_SHARE)
     ripple = 2.0 / 3.0 * size.volts / size.inductance_d * 1e-6  # A, of a pulse of 1 µs
     enough = most / (_LEVELS_ABOVE * ripple)
-    return default if enough < _PULSE_LEAST else min(enough, default)
+    return min(max(enough, _PULSE_LEAST), default)
 
 
 def _synchronism_floor(asked: _Asked, name: str) -> float:
