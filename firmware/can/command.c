@@ -21,7 +21,7 @@ void can_command_reset(can_command_t* c) {
 
 // False: damaged, another's, or the same once more.
 static bool counts(can_command_t* c, const hal_can_frame_t* frame) {
-  if (frame->length != can_message_info(CAN_COMMAND)->octets) return false;
+  if (frame->length != (uint16_t)CAN_COMMAND_OCTETS) return false;
   if (can_get(frame, CAN_COMMAND_CRC) != (int32_t)can_crc8(frame, CRC_AT)) return false;
   const uint16_t alive = (uint16_t)can_get(frame, CAN_COMMAND_ALIVE);
   const uint16_t steps = (uint16_t)((alive - c->alive) % ALIVE_MODULO);

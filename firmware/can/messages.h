@@ -26,6 +26,17 @@ typedef enum {
 #undef CAN_MESSAGE
 #undef CAN_FIELD
 
+/// Of node 0, and how long they are.
+#define CAN_MESSAGE(message, base, octets, sender, meaning) \
+  CAN_##message##_BASE = base, CAN_##message##_OCTETS = octets,
+#define CAN_FIELD(message, field, first, bits, sign, per_unit, unit, meaning)
+enum {
+#include "firmware/can/message_list.h"
+  CAN_BASE_NONE = 0
+};
+#undef CAN_MESSAGE
+#undef CAN_FIELD
+
 #define CAN_MESSAGE(message, base, octets, sender, meaning)
 #define CAN_FIELD(message, field, first, bits, sign, per_unit, unit, meaning) CAN_##message##_##field,
 typedef enum {

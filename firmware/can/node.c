@@ -65,9 +65,9 @@ void can_node_reset(can_answer_t answer) {
 
 // ---- bus ---------------------------------------------------------------------------------------------------
 
-static hal_can_group_t group_of(can_message_t message, uint16_t mailboxes) {
+static hal_can_group_t group_of(uint16_t base, uint16_t mailboxes) {
   hal_can_group_t group;
-  group.id = can_message_info(message)->base + self.node;
+  group.id = base + self.node;
   group.mask = STANDARD_MASK;
   group.extended = false;
   group.mailboxes = mailboxes;
@@ -79,9 +79,9 @@ static void follow_parameters(void) {
   self.rate_kbit = parameters.can_rate;
   self.node = (uint16_t)parameters.can_node;
   hal_can_group_t groups[GROUPS];
-  groups[GROUP_COMMAND] = group_of(CAN_COMMAND, COMMAND_MAILBOXES);
-  groups[GROUP_PARAMETER] = group_of(CAN_PARAMETER_REQUEST, PARAMETER_MAILBOXES);
-  groups[GROUP_RECORD] = group_of(CAN_RECORD_REQUEST, RECORD_MAILBOXES);
+  groups[GROUP_COMMAND] = group_of(CAN_COMMAND_BASE, COMMAND_MAILBOXES);
+  groups[GROUP_PARAMETER] = group_of(CAN_PARAMETER_REQUEST_BASE, PARAMETER_MAILBOXES);
+  groups[GROUP_RECORD] = group_of(CAN_RECORD_REQUEST_BASE, RECORD_MAILBOXES);
   (void)hal_can_init((uint32_t)self.rate_kbit * 1000uL, groups, (uint16_t)GROUPS);
 }
 
@@ -172,7 +172,7 @@ static answer_status_t carry_out(int32_t operation, uint16_t id, int32_t raw) {
 static void answer_parameter(void) {
   hal_can_frame_t request;
   if (hal_can_waiting(PRIORITY_PARAMETER) != 0u || !hal_can_receive(GROUP_PARAMETER, &request)) return;
-  if (request.length != can_message_info(CAN_PARAMETER_REQUEST)->octets) return;
+  if (request.length != (uint16_t)CAN_PARAMETER_REQUEST_OCTETS) return;
   const int32_t operation = can_get(&request, CAN_PARAMETER_REQUEST_OPERATION);
   const uint16_t id = (uint16_t)can_get(&request, CAN_PARAMETER_REQUEST_ID);
   const answer_status_t result = carry_out(operation, id, can_get(&request, CAN_PARAMETER_REQUEST_RAW));

@@ -15,8 +15,6 @@
 #define COLUMN_VALUE 23u
 #define COLUMN_MEANING 42u
 
-static word_t pattern;
-
 static void put_row(const parameter_info_t* p) {
   const int32_t raw = parameter_get(p->id);
   octet_writer_t* const w = line_begin();
@@ -32,14 +30,12 @@ static void put_row(const parameter_info_t* p) {
 static bool list_one(uint16_t step) {
   const parameter_info_t* const p = parameter_info(step);
   if (p == NULL) return false;
-  if (word_occurs(&pattern, parameter_name(p)) || word_occurs(&pattern, parameter_meaning(p))) put_row(p);
+  if (filter_takes(parameter_name(p), parameter_meaning(p))) put_row(p);
   return true;
 }
 
 void command_list(const words_of_line_t* a) {
-  pattern.text = NULL;
-  pattern.count = 0;
-  if (a->count > 0u) pattern = a->word[0];
+  filter_begin(a);
   console_run(list_one, false);
 }
 

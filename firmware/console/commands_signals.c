@@ -59,21 +59,17 @@ void command_watch(const words_of_line_t* a) {
   console_run(watch, true);
 }
 
-static word_t pattern;
-
 static bool list_signals(uint16_t step) {
   const signal_info_t* const s = signal_info(step);
   if (s == NULL) return false;
   if (signal_is_left_out(step)) return true;
-  if (!word_occurs(&pattern, s->name) && !word_occurs(&pattern, signal_meaning(s))) return true;
+  if (!filter_takes(s->name, signal_meaning(s))) return true;
   put_signal_row(line_begin(), step);
   line_end();
   return true;
 }
 
 void command_signals(const words_of_line_t* a) {
-  pattern.text = NULL;
-  pattern.count = 0;
-  if (a->count > 0u) pattern = a->word[0];
+  filter_begin(a);
   console_run(list_signals, false);
 }

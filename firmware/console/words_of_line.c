@@ -26,8 +26,16 @@ void put_word(octet_writer_t* w, const word_t* word) {
   for (uint16_t k = 0; k < word->count; k++) put_u8(w, word->text[k]);
 }
 
-bool word_occurs(const word_t* word, packed_text_t text) {
-  return word->text == NULL || packed_occurs(text, word->text, word->count);
+static word_t wanted;
+
+void filter_begin(const words_of_line_t* a) {
+  static const word_t nothing = {NULL, 0};
+  wanted = (a->count > 0u) ? a->word[0] : nothing;
+}
+
+bool filter_takes(packed_text_t name, packed_text_t meaning) {
+  return wanted.text == NULL || packed_occurs(name, wanted.text, wanted.count) ||
+         packed_occurs(meaning, wanted.text, wanted.count);
 }
 
 word_t next_word(const editor_line_t* line, uint16_t* at) {

@@ -45,8 +45,9 @@ void put_word(octet_writer_t* w, const word_t* word);
 /// True when word k is there and is this text.
 bool word_is(const words_of_line_t* a, uint16_t k, packed_text_t text);
 
-/// True when the word occurs in the text; one that is nowhere (text is NULL) occurs in all of them.
-bool word_occurs(const word_t* word, packed_text_t text);
+/// What a list is to show: rows in whose name or meaning the line's first word occurs, all where it has none.
+void filter_begin(const words_of_line_t* a);
+bool filter_takes(packed_text_t name, packed_text_t meaning);
 
 #if defined(__cplusplus)
 }

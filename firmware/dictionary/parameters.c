@@ -136,14 +136,7 @@ const parameter_info_t* parameter_by_id(uint16_t id) {
   return is_here(row) ? &table[row] : NULL;
 }
 
-bool parameter_is_left_out(uint16_t id) {
-  for (const rows_t* gone = edition_parameters_left_out; gone->count > 0u; gone++) {
-    for (uint16_t k = 0; k < gone->count; k++) {
-      if (table[gone->first + k].id == id) return true;
-    }
-  }
-  return false;
-}
+bool parameter_is_left_out(uint16_t id) { return rows_have(edition_parameters_left_out, row_by_id(id)); }
 
 bool parameter_name_is_left_out(const uint16_t* name, uint16_t count) {
   return rows_have(edition_parameters_left_out, row_by_name(name, count));

@@ -2,7 +2,7 @@
 
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/mode.h"
-#include "hal/qmath/qarith.h"
+#include "hal/qmath/qcall.h"
 
 #define Q_MAX 31u  // fractional bits of a 32-bit number
 
@@ -35,11 +35,9 @@ void values_copy(void) {
 
 bool values_know(uint16_t id) { return find(id) < parameter_count(); }
 
-// raw with so many fractional bits more, or fewer; exact halves upward.
-static int64_t rescaled(int32_t raw, int16_t more) {
-  if (more >= 0) return (int64_t)raw * (int64_t)(1uLL << more);
-  const unsigned down = (unsigned)-more;
-  return q_shr64(raw + (int64_t)(1uLL << (down - 1u)), down);
+// raw with so many fractional bits more, or fewer; exact halves upward. No range reaches to where it saturates.
+static int32_t rescaled(int32_t raw, int16_t more) {
+  return (more >= 0) ? qc_shl_sat(raw, (unsigned)more) : q_shr_round(raw, (unsigned)-more);
 }
 
 value_fate_t values_put(const slot_entry_t* entry) {
@@ -48,17 +46,15 @@ value_fate_t values_put(const slot_entry_t* entry) {
   const parameter_info_t* const info = parameter_info(index);
   if (entry->q > Q_MAX) return VALUE_REFUSED;
   const int16_t more = (int16_t)((int16_t)info->q - (int16_t)entry->q);
-  int64_t raw = rescaled(entry->raw, more);
+  const int32_t raw = rescaled(entry->raw, more);
   // A limit in the coarser of two formats may be one step beyond that in the finer one.
-  int64_t slack = (more == 0) ? 0 : 1;
-  if (more > 0) slack = (int64_t)(1uLL << more);
+  const int32_t slack = (more == 0) ? 0 : qc_shl_sat(1, (unsigned)q_max(more, 0));
   const int32_t least = parameter_minimum(info);
   const int32_t most = parameter_maximum(info);
-  if (raw < least - slack || raw > most + slack) return VALUE_REFUSED;
-  raw = (raw < least) ? least : raw;
+  if (raw < qc_sub_sat(least, slack) || raw > qc_add_sat(most, slack)) return VALUE_REFUSED;
   int32_t* const place = parameter_value(&set, index);
   const int32_t before = *place;
-  *place = (raw > most) ? most : (int32_t)raw;
+  *place = q_clamp(raw, least, most);
   if (drive_source_is_left_out(&set)) {
     *place = before;
     return VALUE_REFUSED;

@@ -112,12 +112,18 @@ bool packed_is(packed_text_t text, const char* string) {
   return c == 0u && *string == '\0';
 }
 
+// Whether the text goes on with these characters.
+static bool goes_on_with(packed_reader_t* r, const uint16_t* wanted, uint16_t count) {
+  for (uint16_t k = 0; k < count; k++) {
+    const uint16_t c = packed_next(r);
+    if (c == 0u || text_small(c) != text_small(wanted[k])) return false;
+  }
+  return true;
+}
+
 bool packed_equals(packed_text_t text, const uint16_t* wanted, uint16_t count) {
   packed_reader_t r = packed_reader(text);
-  uint16_t c = packed_next(&r);
-  uint16_t k = 0;
-  for (; c != 0u && k < count && text_small(c) == text_small(wanted[k]); k++) c = packed_next(&r);
-  return c == 0u && k == count;
+  return goes_on_with(&r, wanted, count) && packed_next(&r) == 0u;
 }
 
 uint16_t packed_find(packed_text_t first, uint16_t texts, const uint16_t* wanted, uint16_t count) {
@@ -131,20 +137,12 @@ uint16_t packed_find(packed_text_t first, uint16_t texts, const uint16_t* wanted
   return texts;
 }
 
-// Whether the text goes on with these characters.
-static bool goes_on_with(packed_reader_t r, const uint16_t* wanted, uint16_t count) {
-  for (uint16_t k = 0; k < count; k++) {
-    const uint16_t c = packed_next(&r);
-    if (c == 0u || text_small(c) != text_small(wanted[k])) return false;
-  }
-  return true;
-}
-
 bool packed_occurs(packed_text_t text, const uint16_t* wanted, uint16_t count) {
   packed_reader_t r = packed_reader(text);
   if (count == 0u) return true;
   do {
-    if (goes_on_with(r, wanted, count)) return true;
+    packed_reader_t here = r;
+    if (goes_on_with(&here, wanted, count)) return true;
   } while (packed_next(&r) != 0u);
   return false;
 }

@@ -96,7 +96,7 @@ TERMINAL = tuple(f"firmware/console/{name}.c" for name in ("console", "job", "ed
 
 STORE = (
     *("tests/prove/store.c", "firmware/dictionary/parameters.c", "firmware/api/status.c", OCTETS, CRC),
-    *("hal/qmath/qdiv.c", "hal/qmath/qquotient.c"),
+    *("hal/qmath/qcall.c", "hal/qmath/qdiv.c", "hal/qmath/qquotient.c"),
     *(f"firmware/store/{name}.c" for name in ("reader", "scan", "slot", "store", "values", "writer")),
 )
 KERNEL = (
