@@ -235,7 +235,7 @@ std::int32_t random_value(Random& random, const parameter_info_t& p, bool wild) 
 TEST_F(DriveConfig, RandomSetsAreAcceptedConsistentOrRefused) {
   Random random(80);
   int accepted = 0, refused = 0;
-  for (int n = 0; n < 6000; ++n) {
+  for (int n = 0; n < 9000; ++n) {
     parameters_reset();
     for (std::uint16_t k = 0; k < parameter_count(); ++k) {
       const parameter_info_t& p = *parameter_info(k);
