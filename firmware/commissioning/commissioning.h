@@ -41,7 +41,6 @@ typedef struct {
   uint16_t index;
   uint16_t turn;  // period of those in which the sums take turns
   int32_t tick;
-  int32_t most_q20;             // mean current that leaves the ripple room
   int32_t first_q20, step_q20;  // the first level, and by how much each is above the one before
   dead_time_config_t one_volt;  // the devices, if their drop were that
 } staircase_t;
@@ -57,7 +56,7 @@ typedef struct {
   map_group_t group[MAP_LEVELS][MAP_GROUPS];
   uint16_t level;
   uint16_t levels;   // with a saliency, or all of them
-  int32_t most_q20;  // current of the last level
+  int32_t most_q20;  // current of the last level; before the first begins, the mean that leaves the ripple room
   uint16_t train;    // trains begun at this level
   int32_t tick;      // in the train, or in the pause after it
   int32_t segment;   // length of a segment, periods

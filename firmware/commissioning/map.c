@@ -145,8 +145,7 @@ int32_t commissioning_map_done(const map_t* m) {
   return (int32_t)m->level * 250 + quarter;
 }
 
-static void begin_map(map_t* m, int32_t most_q20) {
-  m->most_q20 = most_q20;
+static void begin_map(map_t* m) {
   m->levels = MAP_LEVELS;
   m->lost = false;
   m->level = 0;
@@ -162,7 +161,8 @@ static void next_level(map_t* m) {
   if (!m->lost) return;
   if (m->level <= SALIENT_LEAST && m->most_q20 > drive.config.values.current_limit / 4) {
     m->kept = m->level > 1u;
-    begin_map(m, m->most_q20 / 2);
+    m->most_q20 /= 2;
+    begin_map(m);
   } else {
     m->levels = (uint16_t)(m->level - 1u);
     m->level = MAP_LEVELS;
@@ -170,7 +170,7 @@ static void next_level(map_t* m) {
 }
 
 static void begin(const drive_t* d, map_t* m) {
-  begin_map(m, commissioning.staircase.most_q20);
+  begin_map(m);
   m->segment = 0;
   m->pause = true;
   m->kept = false;

@@ -29,7 +29,7 @@ class Phases : public Drive {
     commissioning.model = inside::model();
     inside::link_q16() = raw(kLink, 16);
     inside::selected() = {0, 0, 0, 32767};
-    commissioning.staircase.most_q20 = parameters.current_limit;  // as it has placed its levels
+    commissioning.map.most_q20 = parameters.current_limit;  // as it has placed its levels
     limit_ = real(parameters.current_limit, 20);
   }
 

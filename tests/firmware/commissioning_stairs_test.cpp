@@ -198,6 +198,7 @@ TEST_F(CommissioningStairs, TheMapGoesNoFurtherThanTheSaliency) {
 TEST_F(CommissioningStairs, TheLevelThatWasGoodIsKept) {
   map_t& m = commissioning.map;
   for (const int lost : {0, 1}) {
+    m.most_q20 = parameters.current_limit;
     commissioning.tick = 0;
     (void)commissioning_map(&drive);
     commissioning.tick = 1;
@@ -210,7 +211,7 @@ TEST_F(CommissioningStairs, TheLevelThatWasGoodIsKept) {
     m.lost = true;
     EXPECT_FALSE(commissioning_map(&drive));
     ASSERT_EQ(m.level, 0);
-    ASSERT_EQ(m.most_q20, commissioning.staircase.most_q20 / 2);
+    ASSERT_EQ(m.most_q20, parameters.current_limit / 2);
     for (int n = 0; n < 16; ++n) (void)commissioning_map(&drive);
     for (int level = 0; level < 4; ++level) {
       for (int k = 0; k < 4; ++k) {
