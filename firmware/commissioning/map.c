@@ -140,9 +140,12 @@ static void empty_next_group(map_t* m) {
   }
 }
 
+// Thousandths of what four levels take: a level has half of the periods of the one below, and longer segments.
 int32_t commissioning_map_done(const map_t* m) {
-  const int32_t quarter = (m->level < MAP_LEVELS) ? q_min(periods_done(m), WANTED_PERIODS) / (WANTED_PERIODS / 250) : 0;
-  return (int32_t)m->level * 250 + quarter;
+  static const int16_t ends[MAP_LEVELS + 1u] = {0, 270, 585, 820, 1000};
+  if (m->level >= MAP_LEVELS) return ends[MAP_LEVELS];
+  const int32_t begin = ends[m->level];
+  return begin + q_min(periods_done(m), WANTED_PERIODS) * (ends[m->level + 1u] - begin) / WANTED_PERIODS;
 }
 
 static void begin_map(map_t* m) {
