@@ -213,13 +213,8 @@ def test_a_machine_without_saliency_is_found_as_a_whole(tmp_path, motor, angle):
     assert found["inertia"] == pytest.approx(told["inertia"] * (1.0 + error["inertia"]), rel=0.05)
 
 
-@pytest.mark.parametrize(("motor", "salient"), [("hsm1_300v", 0.0), ("motorcycle_72v", 225.0), ("prius_2004", 125.0)])
-def test_a_machine_that_is_not_held_or_salient_at_its_limit_is_found_as_a_whole(tmp_path, motor, salient):
-    """One's magnets lose to the reluctance at 80 A of 312 A, the others' saliency ends before 600 A and 250 A.
-
-    The last one's rotor would not stay under 200 A against its magnets, its link gives way by 6 % of the resistance,
-    and its ripple is small beside what its board's sensors tell.
-    """
+def found_whole(tmp_path, motor):
+    """All 24 values of a commissioning in the motor's own profile: found; told; by what the plant differs."""
     native = pytest.importorskip("stillspin._core", reason="the native module is not built")
     chosen = profile.load(motor, core.plant_schema(native), core.parameters(native), motor)
     out = tmp_path / "params.toml"
@@ -230,6 +225,17 @@ def test_a_machine_that_is_not_held_or_salient_at_its_limit_is_found_as_a_whole(
     assert "24 of 24 values found" in result.stdout
     found = tomllib.loads(out.read_text(encoding="utf-8"))["parameters"]
     told, error = chosen.parameters, chosen.plant["parameter_error"]
+    return found, told, error
+
+
+@pytest.mark.parametrize(("motor", "salient"), [("hsm1_300v", 0.0), ("motorcycle_72v", 225.0), ("prius_2004", 125.0)])
+def test_a_machine_that_is_not_held_or_salient_at_its_limit_is_found_as_a_whole(tmp_path, motor, salient):
+    """One's magnets lose to the reluctance at 80 A of 312 A, the others' saliency ends before 600 A and 250 A.
+
+    The last one's rotor would not stay under 200 A against its magnets, its link gives way by 6 % of the resistance,
+    and its ripple is small beside what its board's sensors tell.
+    """
+    found, told, error = found_whole(tmp_path, motor)
     assert found["saliency_current"] == salient
     for name in ("inductance_d", "inductance_q"):
         assert found[name] == pytest.approx(told[name] * (1.0 + error[name]), rel=0.03)
@@ -244,16 +250,7 @@ def test_a_machine_that_is_not_held_or_salient_at_its_limit_is_found_as_a_whole(
 @pytest.mark.parametrize("motor", ["drone_48v", "racing_580v"])
 def test_a_machine_with_a_large_ripple_is_found_as_a_whole(tmp_path, motor):
     """A third and half of the current limit, beside a trip at 1.3 times that; one's rotor turns by 30° in a train."""
-    native = pytest.importorskip("stillspin._core", reason="the native module is not built")
-    chosen = profile.load(motor, core.plant_schema(native), core.parameters(native), motor)
-    out = tmp_path / "params.toml"
-    command = [sys.executable, "-m", "stillspin", "commission", "--motor", motor, "--profile", motor]
-    command += ["--set", "solver.method=rk4", "--out", str(out)]
-    result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
-    assert result.returncode == 0, result.stderr
-    assert "24 of 24 values found" in result.stdout
-    found = tomllib.loads(out.read_text(encoding="utf-8"))["parameters"]
-    told, error = chosen.parameters, chosen.plant["parameter_error"]
+    found, told, error = found_whole(tmp_path, motor)
     for name, within in (("inductance_d", 0.03), ("inductance_q", 0.03), ("magnet_flux", 0.03), ("inertia", 0.05)):
         assert found[name] == pytest.approx(told[name] * (1.0 + error[name]), rel=within), name
     assert found["stator_resistance"] == pytest.approx(told["stator_resistance"] * (1.0 + error["resistance"]), rel=0.1)
