@@ -310,9 +310,9 @@ TEST_F(Phases, ProgressIsTheSharesOfThePhases) {
   c.spin.leg = 2;
   EXPECT_EQ(progress(COMMISSIONING_SPIN), 178 + 21);
   c.map.level = 1;
-  EXPECT_EQ(progress(COMMISSIONING_MAP), 220 + 195);
-  c.map.group[1][MAP_GROUPS - 1].tensor.count = 2000;  // half of what the second level wants
-  EXPECT_EQ(progress(COMMISSIONING_MAP), 220 + 292);
+  EXPECT_EQ(progress(COMMISSIONING_MAP), 220 + 780 * 270 / 1000);  // the first level takes the longest
+  c.map.group[1][MAP_GROUPS - 1].tensor.count = 2000;              // half of what the second level wants
+  EXPECT_EQ(progress(COMMISSIONING_MAP), 220 + 780 * (270 + 315 / 2) / 1000);
   c.map.level = MAP_LEVELS;
   EXPECT_EQ(progress(COMMISSIONING_MAP), 1000);
   EXPECT_EQ(progress(COMMISSIONING_EVALUATE), 1000);
