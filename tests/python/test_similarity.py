@@ -11,7 +11,7 @@ import pytest
 from test_scales import PLANT, larger
 
 from stillspin import core, resources
-from stillspin.cases import nameplate, profile, similarity
+from stillspin.cases import nameplate, profile, similarity, sized_effects
 from stillspin.scales import SCALES
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -82,7 +82,7 @@ def test_the_bench_is_as_bad_for_a_machine_of_another_size(native, scales):
         current_range=reference.current_range * amperes,
     )
     pair = dict(zip(SCALES, map(float, scales), strict=True))
-    found = similarity.effects(SECTIONS, machine, pair, core.plant_schema(native))
+    found = sized_effects.of_size(SECTIONS, machine, pair, core.plant_schema(native))
     larger = {
         "inverter": {"switch_threshold": volts, "diode_threshold": volts}
         | dict.fromkeys(("switch_resistance", "diode_resistance"), volts / amperes),

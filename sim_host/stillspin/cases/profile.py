@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from stillspin import core, json_schema, resources, toml_table
-from stillspin.cases import file_schema, flux_table, nameplate, similarity
+from stillspin.cases import file_schema, flux_table, nameplate, similarity, sized_effects
 from stillspin.entry import Entry, Value
 from stillspin.errors import InputError, did_you_mean
 from stillspin.scales import SCALES
@@ -86,7 +86,7 @@ def load(
     known = core.at_scale(known, scales)
     machine = _read("motor", motor, schema, known)
     effects = _read("profile", name_or_path, schema, known)
-    added = similarity.effects(effects.plant, machine.plant, scales, schema) if effects.sized else effects.plant
+    added = sized_effects.of_size(effects.plant, machine.plant, scales, schema) if effects.sized else effects.plant
     follows = nameplate.following(machine.plant, machine.parameters)
     sized = similarity.follow(machine.plant, {**follows, **machine.parameters}, known)
     follows |= sized

@@ -14,9 +14,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from stillspin import core
-from stillspin import scales as boards
 from stillspin.cases import open_loop
-from stillspin.entry import Entry, Value
+from stillspin.entry import Entry
 
 PERIOD = 1e-4  # s, of the control interrupt
 # The polarity test by motion (estimators/polarity.c): periods of a segment, and the turn in it, electrical.
@@ -39,7 +38,6 @@ _NEEDED = {
     "mechanics": ("inertia",),
     "link": ("source_voltage",),
 }
-_LIKE = {"F": "A/V"}  # units of the plant that the drive has none of
 _RANGE = 20.0  # A, of a board that does not say its sensors'
 
 
@@ -165,35 +163,8 @@ def noise(plant: core.Plant) -> float:
     return float(2.0 ** math.floor(math.log2(min(max(ratio, 1.0), _NOISE_MOST))))
 
 
-def effects(stated: core.Plant, machine: core.Plant, scales: Mapping[str, float], schema: core.Schema) -> core.Plant:
-    """What a profile made for the reference's board adds to another machine on its own, within the plant's ranges.
-
-    Volts and amperes are taken in units of the board's size, as the drive's formats have them, and a torque by the
-    machine's own: a switch that drops 1 V on 300 V drops 60 mV on 12 V.
-
-    Args:
-        stated: by the profile.
-        machine: what the motor's file states.
-        scales: of the drive on this board.
-        schema: what the plant can be told.
-    """
-    size, pair = of(machine), boards.of(scales)
-    torque = _power(size.torque / REFERENCE.torque) if size else 1.0
-
-    def sized(entry: Entry, value: Value) -> Value:
-        factor = torque if entry.unit == "Nm" else 2.0 ** boards.exponent(_LIKE.get(entry.unit, entry.unit), pair)
-        if factor == 1.0 or isinstance(value, str):
-            return value
-        return min(max(value * factor, entry.minimum or 0.0), entry.maximum or math.inf)
-
-    return {
-        section: {key: sized(schema[section][key], value) for key, value in keys.items()}
-        for section, keys in stated.items()
-    }
-
-
-def _power(ratio: float) -> float:
-    """The nearest power of two."""
+def power_of_two(ratio: float) -> float:
+    """The nearest one."""
     return 2.0 ** round(math.log2(ratio))
 
 
@@ -220,7 +191,7 @@ class _Asked:
 
 
 def _by_current(asked: _Asked, name: str) -> float:
-    return asked.limited(asked.default(name) * _power(asked.size.current / REFERENCE.current))
+    return asked.limited(asked.default(name) * power_of_two(asked.size.current / REFERENCE.current))
 
 
 def _polarity_current(asked: _Asked, name: str) -> float:
@@ -240,7 +211,7 @@ def _polarity_current(asked: _Asked, name: str) -> float:
 def _load(asked: _Asked, name: str) -> float:
     """All three torques of the observer alike; where the EMF alone shows the angle, no more than the default."""
     size, rate = asked.size, asked.default("observer_load_rate")
-    factor = _power(size.torque / REFERENCE.torque)
+    factor = power_of_two(size.torque / REFERENCE.torque)
     if open_loop.share(size.inductance_d, size.inductance_q) < open_loop.SALIENCY_LEAST:
         return min(asked.default(name) * factor, float(asked.known[name].default))
     most = _FOLLOW_MOST * REFERENCE.loop_of_load(rate)
@@ -248,7 +219,7 @@ def _load(asked: _Asked, name: str) -> float:
 
 
 def _by_base_speed(asked: _Asked, name: str) -> float:
-    return asked.default(name) * _power(asked.size.base_speed / REFERENCE.base_speed)
+    return asked.default(name) * power_of_two(asked.size.base_speed / REFERENCE.base_speed)
 
 
 def _up_to_top_speed(asked: _Asked, name: str) -> float:
@@ -274,14 +245,14 @@ def _ramp(asked: _Asked, name: str) -> float:
     """A share of what the rated current accelerates with, and no faster to the base speed than the reference."""
     size = asked.size
     ratio = min(size.acceleration / REFERENCE.acceleration, size.base_speed / REFERENCE.base_speed)
-    return asked.default(name) * _power(ratio)
+    return asked.default(name) * power_of_two(ratio)
 
 
 def _if_ramp(asked: _Asked, name: str) -> float:
     """The same share of what the turning current accelerates with."""
     current = asked.told.get("if_current", _by_current(asked, "if_current"))
     usual = REFERENCE.torque_per_ampere * asked.default("if_current") / REFERENCE.inertia
-    return asked.default(name) * _power(asked.size.torque_per_ampere * current / asked.size.inertia / usual)
+    return asked.default(name) * power_of_two(asked.size.torque_per_ampere * current / asked.size.inertia / usual)
 
 
 def _speed_alpha(asked: _Asked, name: str) -> float:
@@ -308,7 +279,7 @@ def _by_agility(asked: _Asked, name: str) -> float:
     if open_loop.share(size.inductance_d, size.inductance_q) < open_loop.SALIENCY_LEAST:
         return default
     ratio = size.pole_pairs * size.acceleration / (REFERENCE.pole_pairs * REFERENCE.acceleration)
-    faster = max(_power(math.sqrt(ratio)), 1.0)
+    faster = max(power_of_two(math.sqrt(ratio)), 1.0)
     return default * _halved(faster, lambda faster: faster * faster <= _TURN_MOST * ratio)
 
 
@@ -324,7 +295,7 @@ def _drop_band(asked: _Asked, name: str) -> float:
     """A smaller share of the board's range where the ripple is: within the band no dead time is told from a current."""
     default = float(asked.known[name].default)
     ratio = asked.default(name) * asked.size.ripple / REFERENCE.ripple / default
-    return default * min(_power(ratio), 1.0)
+    return default * min(power_of_two(ratio), 1.0)
 
 
 def _pulse_time(asked: _Asked, name: str) -> float:
@@ -348,7 +319,7 @@ def _pulse_time(asked: _Asked, name: str) -> float:
 
 def _synchronism_floor(asked: _Asked, name: str) -> float:
     """What the sensors' noise looks like; no less than the default in volts of the board's size, for the devices."""
-    noise = asked.default(name) * _power(asked.size.noise_volts / REFERENCE.noise_volts)
+    noise = asked.default(name) * power_of_two(asked.size.noise_volts / REFERENCE.noise_volts)
     return max(noise, float(asked.known[name].default))
 
 
