@@ -96,7 +96,7 @@ static void follow(drive_t* d, map_t* m, int32_t target_q20) {
 
 // What a level has of WANTED_PERIODS, by the group of the last segment, which is filled last.
 static int32_t periods_done(const map_t* m) {
-  return m->group[m->level][MAP_GROUPS - 1u].tensor.count * ((int32_t)m->level + 1);
+  return q_clamp(m->group[m->level][MAP_GROUPS - 1u].tensor.count, 0, WANTED_PERIODS) * ((int32_t)m->level + 1);
 }
 
 static bool level_complete(const map_t* m) {
@@ -132,11 +132,11 @@ static void move_on(const map_t* m) {
 static void empty_next_group(map_t* m) {
   if (m->level != 0u || m->train != 0u || m->tick >= (int32_t)(MAP_LEVELS * MAP_GROUPS)) return;
   const uint16_t n = (uint16_t)(MAP_LEVELS * MAP_GROUPS - 1u - (uint16_t)m->tick);
-  map_group_t* const g = &m->group[n / MAP_GROUPS][n % MAP_GROUPS];
-  if (m->kept && n / MAP_GROUPS == 1u) {
-    *g = m->group[0][n % MAP_GROUPS];
+  const uint16_t level = n / MAP_GROUPS, k = n % MAP_GROUPS;
+  if (m->kept && level == 1u) {
+    m->group[1][k] = m->group[0][k];
   } else {
-    clear(g, sizeof *g);
+    clear(&m->group[level][k], sizeof m->group[level][k]);
   }
 }
 

@@ -67,10 +67,10 @@ static void place(const drive_t* d) {
   const config_values_t* const v = &d->config.values;
   const int32_t ripple = ripple_q20(d);
   const int32_t room = q_clamp(v->trip_current - ripple / 8 * 9, v->current_limit / 4, v->current_limit);
-  const int32_t limit = q_min(q_min(bearable_q20(), opposite_q20(d)), room);
+  const int32_t limit = q_clamp(q_min(bearable_q20(), opposite_q20(d)), 0, room);
   commissioning.map.most_q20 = room;
   // A rotor without saliency follows: nothing holds it.
-  int32_t most = commissioning.uniform ? limit : q_min(limit, held_q20());
+  int32_t most = commissioning.uniform ? limit : q_clamp(held_q20(), 0, limit);
   int32_t sign = 1;
   if (ripple > most / 2) {
     most = q_min(limit, v->weakening_limit);

@@ -195,7 +195,7 @@ void prove_interrupt(void) {
   drive_reset();
   any_parameters();
   // Where what the code limits ends, so that EVA does not look farther.
-  /*@ loop widen_hints "all", -536870912, -268435456, -134217728, -10000, 5, 8, 14, 10000, 5242880, 134217728,
-     268435456, 536870912; */
+  /*@ loop widen_hints "all", -536870912, -268435456, -134217728, -8388608, -10000, 5, 8, 14, 10000, 5242880,
+     134217728, 268435456, 536870912; */
   while (any_bool()) one_period();
 }
