@@ -9,7 +9,7 @@ a feature.toml, or a path from where the list is. What a feature.toml may say:
     needs       features without which this one does not work
     headers     what declares the rows: in its folder, or from the root
     words       kinds of words (text/word_list.h) that are its own
-    instead     by source outside of the folder that only this feature has a use for: what an image without it has
+    instead     what an image without it has: libraries, by each the sources outside of the folder whose place it takes
     rows        by table: what stands there, with its place: a number, smaller ones come first. What console and link
                 alone ask for is dropped without them, and with it what a feature's commands*.c and requests*.c are for
 
@@ -53,8 +53,13 @@ class Feature:
     needs: tuple[str, ...] = ()
     headers: tuple[str, ...] = ()
     words: tuple[str, ...] = ()
-    instead: dict[str, str] = field(default_factory=dict)
+    instead: dict[str, list[str]] = field(default_factory=dict)
     rows: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def replaced(self) -> list[str]:
+        """The sources that an image without it has others for."""
+        return [source for sources in self.instead.values() for source in sources]
 
     @property
     def parameters(self) -> dict[int, str]:
@@ -352,8 +357,7 @@ def write_for_cmake(folder: Path, name: str) -> None:
     text = set_list("composed_sources", (path.resolve().as_posix() for path in sources))
     text += set_list("composed_from", (path.resolve().as_posix() for path in files))
     text += set_list("composed_left_out", (feature.name for feature in left_out(edition)))
-    instead = [(ROOT / source).as_posix() for feature in left_out(edition) for source in feature.instead.values()]
-    text += set_list("composed_instead", instead)
+    text += set_list("composed_instead", (library for feature in left_out(edition) for library in feature.instead))
     text += set_list("composed_outside", (feature.folder.resolve().as_posix() for feature in outside))
     dictionary = "".join(lists.text(name) for name in (PARAMETERS, SIGNALS, FAULTS))
     text += set_list("composed_tables", [hashlib.sha256(dictionary.encode()).hexdigest()[:8]])

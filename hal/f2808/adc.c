@@ -125,7 +125,7 @@ static inline uint32_t sum_of_start(uint16_t first_result) {
   return three + pair((uint16_t)(first_result + 6u));
 }
 
-void adc_take_slice(uint16_t results[]) {
+TARGET_RAM_CODE void adc_take_slice(uint16_t results[]) {
   uint32_t currents = pair(SEQ2_FIRST_RESULT);
   if (has_crosstalk) currents = less_crosstalk(currents);
   results[0] = (uint16_t)(currents & 0xFFFFuL);
@@ -155,28 +155,14 @@ static inline void take_results(hal_adc_window_t* window) {
   pie_acknowledge(PIE_GROUP(VECTOR_SEQ2INT));
 }
 
-static void play_results(hal_adc_window_t* window) {
-  uint16_t results[REPLAY_RESULTS];
-  replay_take_results(results, REPLAY_RESULTS);
-  window->start_a = results[0];
-  window->start_b = results[1];
-  window->end_a = results[2];
-  window->end_b = results[3];
-  window->link = results[4];
-  window->aux = results[5];
-}
+typedef char a_window_is_as_many_words[sizeof(hal_adc_window_t) == REPLAY_RESULTS * sizeof(uint16_t) ? 1 : -1];
 
-static void note_results(const hal_adc_window_t* window) {
-  const uint16_t results[REPLAY_RESULTS] = {window->start_a, window->start_b, window->end_a,
-                                            window->end_b,   window->link,    window->aux};
-  replay_note_results(results, REPLAY_RESULTS);
-}
-
-void hal_adc_read_window(hal_adc_window_t* window) {
+TARGET_RAM_CODE void hal_adc_read_window(hal_adc_window_t* window) {
+  uint16_t* const words = (uint16_t*)window;
   if (replay_plays()) {
-    play_results(window);
+    replay_take_results(words, REPLAY_RESULTS);
     return;
   }
   take_results(window);
-  if (!replay_is_off()) note_results(window);
+  if (!replay_is_off()) replay_note_results(words, REPLAY_RESULTS);
 }

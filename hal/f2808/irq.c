@@ -15,9 +15,9 @@ static hal_isr_t control_function = NULL;
 static hal_isr_t window_function = NULL;
 static volatile uint16_t unexpected_count = 0u;
 
-static TARGET_ISR void control_isr(void) { control_function(); }
+TARGET_RAM_CODE static TARGET_ISR void control_isr(void) { control_function(); }
 
-static TARGET_ISR void window_isr(void) { window_function(); }
+TARGET_RAM_CODE static TARGET_ISR void window_isr(void) { window_function(); }
 
 // Not acknowledged: an interrupt that nobody asked for must not come a second time.
 static TARGET_ISR void unexpected_isr(void) {
@@ -84,23 +84,23 @@ void hal_irq_enable(void) {
 
 // The control interrupt's own group stays unacknowledged until the end, so only the window's can come. The return from
 // the interrupt puts IER and INTM back.
-void hal_irq_control_begin(void) {
+TARGET_RAM_CODE void hal_irq_control_begin(void) {
   target_write_ier(PIE_GROUP_MASK(WINDOW_GROUP));
   target_enable_interrupts();
 }
 
-void hal_irq_control_end(void) {
+TARGET_RAM_CODE void hal_irq_control_end(void) {
   target_disable_interrupts();
   target_write16(EPWM_BASE(PWM_MASTER_MODULE) + EPWM_ETCLR, EPWM_ETCLR_INT_MASK);
   pie_acknowledge(CONTROL_GROUP);
 }
 
-uint16_t hal_irq_disable(void) {
+TARGET_RAM_CODE uint16_t hal_irq_disable(void) {
   replay_call();
   return irq_hold();
 }
 
-void hal_irq_restore(uint16_t state) {
+TARGET_RAM_CODE void hal_irq_restore(uint16_t state) {
   replay_call();
   irq_release(state);
 }

@@ -58,7 +58,7 @@ static void set_up_compare(uint16_t module) {
 static inline bool is_tripped(uint16_t module) { return reg_any(EPWM_BASE(module) + EPWM_TZFLG, EPWM_TZFLG_OST_MASK); }
 
 // Written out, with addresses that are constants.
-static bool is_any_leg_tripped(void) {
+TARGET_RAM_CODE static bool is_any_leg_tripped(void) {
   return is_tripped(PWM_FIRST_LEG_MODULE) || is_tripped(PWM_FIRST_LEG_MODULE + 1u) ||
          is_tripped(PWM_FIRST_LEG_MODULE + 2u);
 }
@@ -181,7 +181,7 @@ static inline void write_window(const hal_pwm_frame_t* frame, uint16_t window) {
                 frame->burst_end_tick[window]);
 }
 
-static bool write_registers(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
+TARGET_RAM_CODE static bool write_registers(const hal_pwm_frame_t* frame, uint16_t deadline_tick) {
   // An interrupt between the look at the counter and the last write could carry the writes across the period start.
   const uint16_t state = irq_hold();
   const bool in_time = is_in_time(deadline_tick);
@@ -252,15 +252,14 @@ void hal_pwm_gates_off(void) {
   target_edis();
 }
 
-bool hal_pwm_is_tripped(void) {
+TARGET_RAM_CODE bool hal_pwm_is_tripped(void) {
+  if (replay_is_off()) return is_any_leg_tripped();
   replay_call();
-  if (replay_plays()) return replay_take() != 0u;
-  const bool tripped = is_any_leg_tripped();
-  if (!replay_is_off()) (void)replay_note(tripped ? 1u : 0u);
-  return tripped;
+  return replay_plays() ? replay_take() != 0u : replay_note(is_any_leg_tripped() ? 1u : 0u) != 0u;
 }
 
-bool hal_pwm_was_tripped_by_pin(void) {
+TARGET_RAM_CODE bool hal_pwm_was_tripped_by_pin(void) {
   replay_call();
-  return replay_plays() ? replay_take() != 0u : replay_note(is_tripped(PWM_TRIP_WITNESS_MODULE) ? 1u : 0u) != 0u;
+  if (replay_plays()) return replay_take() != 0u;
+  return replay_note(is_tripped(PWM_TRIP_WITNESS_MODULE) ? 1u : 0u) != 0u;
 }

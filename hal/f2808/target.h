@@ -16,7 +16,7 @@ extern __cregister volatile unsigned int IER;
 extern __cregister volatile unsigned int IFR;
 
 #define TARGET_ISR __interrupt  // an interrupt function: full context, returns by IRET
-#define TARGET_RAM_CODE __attribute__((section("ramfuncs"), noinline))  // what changes the flash's timing
+#define TARGET_RAM_CODE __attribute__((section("ramfuncs"), noinline))  // runs from RAM in every image
 #define TARGET_INLINE static inline __attribute__((always_inline))      // so that what runs from RAM stays there
 #define TARGET_IDENTITY __attribute__((section("identity")))  // at the fixed place of the linker command files
 #define TARGET_LINKER_NUMBER(symbol) ((uint32_t)(symbol))     // a number that the linker gives as an address

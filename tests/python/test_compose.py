@@ -43,10 +43,10 @@ def test_an_image_has_something_instead_of_what_only_a_feature_left_out_needs(tm
         said = re.search(r"set\(composed_instead([^)]*)\)", (tmp_path / compose.CMAKE).read_text(encoding="utf-8"))
         assert said
         has = "hil" in {feature.name for feature in compose.read_edition(edition).features}
-        instead = [] if has else [(ROOT / "hal/f2808/image/no_replay.c").as_posix()]
+        instead = [] if has else ["stillspin_no_replay", "stillspin_unrecorded"]
         assert said[1].split() == instead, edition
     for feature in compose.all_features():
-        assert all((ROOT / source).is_file() for pair in feature.instead.items() for source in pair)
+        assert all((ROOT / source).is_file() for source in feature.replaced)
 
 
 def test_each_edition_is_smaller_than_lab() -> None:

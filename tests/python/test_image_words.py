@@ -61,6 +61,23 @@ def test_what_a_feature_takes_is_what_no_other_asks_for(tmp_path: Path) -> None:
     assert features.difference(linked, shared, ["hil"], rows).flash == pytest.approx(-rows[("hil", "store")].flash)
 
 
+def test_what_a_driver_has_more_for_a_feature_is_that_features(tmp_path: Path) -> None:
+    """It is compiled otherwise without it."""
+    program = "int f(int);\nint main(void);\nint main(void) { return f(1); }\n"
+    long, short = (f"int f(int);\nint f(int x) {{ return {value}; }}\n" for value in ("x * x / 7 + x", "x"))
+    places = {name: tmp_path / f"hal/f2808/CMakeFiles/stillspin_{name}.dir/pwm.c.obj" for name in ("hal", "unrecorded")}
+    for path, code in zip(places.values(), (long, short), strict=True):
+        path.parent.mkdir(parents=True)
+        path.write_bytes(compiled(tmp_path, code).read_bytes())
+    main = {Path("/build/stillspin_f2808.dir/main.c.obj"): read_object(compiled(tmp_path, program))}
+    whole, edition = ({**main, path: read_object(path)} for path in places.values())
+    rows = features.taken(whole, ["drive"])
+    assert rows[("hil",)].flash > 0
+    assert rows[()].flash == pytest.approx(features.words_of(edition.values()).flash)
+    assert features.difference(whole, edition, ["hil"], rows).flash == pytest.approx(0)
+    assert features.difference(whole, whole, ["commissioning"], rows).flash == pytest.approx(0)
+
+
 @pytest.mark.parametrize(("limit", "complaints"), [(200, []), (199, ["lab, globals in RAM: 200, limit 199"])])
 def test_figure_beyond_its_limit_is_caught_and_one_beyond_its_goal_is_short(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, limit: int, complaints: list[str]

@@ -136,6 +136,15 @@ def test_a_program_is_linked_with_the_tables_of_its_edition(tmp_path: Path) -> N
     assert list(objects.of("hil").values()) == [sources[0]]
 
 
+def test_a_program_has_the_drivers_of_its_edition(tmp_path: Path) -> None:
+    """Without the host in the loop those that are compiled without record and replay, in the place of the others."""
+    source = program.ROOT / "hal/f2808/pwm.c"
+    targets = [Path(f"hal/f2808/CMakeFiles/stillspin_{name}.dir/pwm.c.obj") for name in ("hal", "unrecorded")]
+    objects = program.Objects(tmp_path, dict.fromkeys(targets, source), [])
+    assert list(objects.of("hil")) == list(objects.of("lab")) == targets[:1]
+    assert list(objects.of("drive")) == list(objects.of("minimal")) == targets[1:]
+
+
 def test_the_chance_of_the_time_agrees_with_its_quantile() -> None:
     cycles = costs(ROOT)["cycles"]
     assert chance_of_cycles(cycles, cycles["p90"]) == pytest.approx(90, abs=0.5)

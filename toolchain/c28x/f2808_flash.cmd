@@ -38,7 +38,8 @@ PAGE 1:
 
    What runs from RAM has no wait states. ramfixed, ramfixedh0 and ramfuncs list what brings most cycles of an interrupt
    for a word (make isr-cost says what in RAM is cold, and what in flash is hotter than what is listed): objects of the
-   resident part, which run from M0 and from a piece of H0 in every image, and functions of the rest. */
+   resident part, which run from M0 and from a piece of H0 in every image, and functions of the rest. Of drivers that some images have
+   compiled otherwise (stillspin_unrecorded) it is marked in the source, TARGET_RAM_CODE. */
 
 SECTIONS
 {
@@ -56,13 +57,7 @@ SECTIONS
               } LOAD = RESIDENT, RUN = RAM_FIXED_H0, PAGE = 0,
               LOAD_START(_image_ram_fixed_h0_load), RUN_START(_image_ram_fixed_h0_run), SIZE(_image_ram_fixed_h0_size)
   ramfuncs  : { *(ramfuncs)
-                libstillspin_hal.a<adc.*>(.text:_hal_adc_read_window, .text:_take_results, .text:_adc_take_slice)
                 libstillspin_hal.a<sampling_timer.*>(.text:_hal_sampling_timer_read, .text:_hal_sampling_timer_set_legs)
-                libstillspin_hal.a<pwm.*>(.text:_write_registers, .text:_hal_pwm_is_tripped, .text:_is_any_leg_tripped,
-                                          .text:_hal_pwm_was_tripped_by_pin)
-                libstillspin_hal.a<irq.*>(.text:_control_isr, .text:_window_isr, .text:_hal_irq_control_begin,
-                                          .text:_hal_irq_control_end, .text:_hal_irq_disable, .text:_hal_irq_restore,
-                                          .text:retain)   /* where cl2000 has interrupt functions */
                 libstillspin_firmware.a<control_interrupt.*>(.text:_drive_control_step, .text:_drive_control_interrupt)
                 libstillspin_firmware.a<schedule.*>(.text:_schedule_next)
                 libstillspin_firmware.a<sampling.*>(.text:_drive_read_samples, .text:_drive_window_interrupt)

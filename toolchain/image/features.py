@@ -2,7 +2,8 @@
 
 An object belongs to the feature in whose folder its source is. One of the floors below belongs to the features from
 which alone it is reached, by the names that objects ask for; what is reached without them, or from a feature that every
-edition has, belongs to what every edition has. What differs beside whole objects is the edition's own tables and texts.
+edition has, belongs to what every edition has. Of one that is compiled otherwise without a feature, what it has more is
+this feature's. What differs beside that is the edition's own tables and texts.
 """
 
 from collections.abc import Collection, Iterable, Mapping
@@ -68,13 +69,19 @@ def _inside(path: Path) -> str:
     return path.as_posix().rpartition(".dir/")[2]
 
 
+def _library(path: Path) -> str:
+    """Of an object of the build."""
+    return next((part.removesuffix(".dir") for part in path.parts if part.endswith(".dir")), "")
+
+
 def tables(linked: Linked) -> Linked:
-    """Those of the edition, its packed texts and what it has instead of a source of another one among them."""
-    instead = {Path(source).name for feature in compose.all_features() for source in feature.instead.values()}
+    """Those of the edition, its packed texts and what it has in the place of a source of another one among them."""
+    instead = {library: sources for feature in compose.all_features() for library, sources in feature.instead.items()}
     return {
         path: obj
         for path, obj in linked.items()
-        if any(f"/{folder}" in _inside(path) for folder in TABLES) or path.stem in instead
+        if any(f"/{folder}" in _inside(path) for folder in TABLES)
+        or path.stem not in {Path(source).name for source in instead.get(_library(path), (path.stem,))}
     }
 
 
@@ -98,13 +105,22 @@ def shares(linked: Linked, always: Collection[str]) -> dict[Path, Row]:
     return {path: () if "" in users else tuple(sorted(users)) for path, users in found.items()}
 
 
+def without(path: Path) -> tuple[str, Path | None]:
+    """The feature without which there is something else in the place of an object, and that where it is its like."""
+    for feature in compose.all_features():
+        for library, sources in feature.instead.items():
+            if any(path.match(f"{Path(source).parent}/CMakeFiles/*/{Path(source).name}.obj") for source in sources):
+                other = path.parent.with_name(f"{library}.dir") / path.name
+                return feature.name, other if other.exists() else None
+    return "", None
+
+
 def _feature_of(path: Path) -> str:
     """The feature that alone has a use for its source, or in whose folder that is, the innermost: folders may nest."""
-    features = compose.all_features()
-    for feature in features:
-        if any(path.match(f"{Path(source).parent}/CMakeFiles/*/{Path(source).name}.obj") for source in feature.instead):
-            return feature.name
-    names = (feature.name for feature in features)
+    feature, other = without(path)
+    if feature and not other:
+        return feature
+    names = (feature.name for feature in compose.all_features())
     return max((name for name in names if f"{FIRMWARE}{name}/" in path.as_posix()), key=len, default="")
 
 
@@ -112,7 +128,13 @@ def taken(linked: Linked, always: Collection[str]) -> dict[Row, Words]:
     """What features take of the flash and of the RAM, alone or with others; () is what every edition has."""
     found: dict[Row, Words] = {}
     for path, row in shares(linked, always).items():
-        found[row] = found.get(row, Words()) + words_of([linked[path]])
+        feature, other = without(path)
+        words = words_of([linked[path]])
+        if other:
+            less = words_of([read_object(other)])
+            found[(feature,)] = found.get((feature,), Words()) + words - less
+            words = less
+        found[row] = found.get(row, Words()) + words
     return dict(sorted(found.items()))
 
 

@@ -77,6 +77,6 @@ def in_other_editions(objects: Iterable[ObjectFile], name: str) -> bool:
 def _names(feature: str) -> set[str]:
     """What its sources define."""
     folder = compose.ROOT / "firmware" / feature
-    own = [*folder.rglob("*.c"), *(compose.ROOT / source for source in compose.feature_of(feature, folder).instead)]
+    own = [*folder.rglob("*.c"), *(compose.ROOT / source for source in compose.feature_of(feature, folder).replaced)]
     text = "\n".join(code(path) for path in sorted(own))
     return {name for _, name in DEFINITION.findall(text)} | set(TABLE.findall(text))

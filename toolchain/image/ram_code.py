@@ -1,8 +1,9 @@
 """What runs from RAM: what the linker command file lists by name, and what is marked in the drivers' sources.
 
 The list (toolchain/c28x/f2808_flash.cmd) is for speed. It names functions, which a compiler may as well put into their
-callers, and objects of the resident part, which the linker has no functions of. Marked is what changes the flash's own
-timing: it may call nothing that lies there, and no compiler may put it into its caller.
+callers, and objects of the resident part, which the linker has no functions of. Marked is what is in every image, by
+whichever object: drivers that are compiled otherwise without a feature, and what changes the flash's own timing, which
+may call nothing that lies there. No compiler may put it into its caller.
 """
 
 import re

@@ -64,13 +64,18 @@ class Objects:
         """Those of an edition: its tables, what it has instead of others' sources, and all that has no edition."""
         found = {}
         gone = compose.left_out(compose.read_edition(edition))
-        replaced = {source for feature in gone for source in feature.instead}
+        replaced = {source for feature in gone for source in feature.replaced}
+        instead = {library: feature in gone for feature in compose.all_features() for library in feature.instead}
         own = f"stillspin_own_{edition}.dir"
         for target, source in self.sources.items():
             inside = source.relative_to(self.build).as_posix() if source.is_relative_to(self.build) else ""
             table = TABLES.fullmatch(inside)
             of_another = "stillspin_own_" in target.as_posix() and own not in target.parts
-            of_another |= source.is_relative_to(ROOT) and source.relative_to(ROOT).as_posix() in replaced
+            library = LIBRARIES.search(target.as_posix())
+            if library and library[1] in instead:
+                of_another |= not instead[library[1]]
+            else:
+                of_another |= source.is_relative_to(ROOT) and source.relative_to(ROOT).as_posix() in replaced
             if not of_another and (not table or (table[1] or check.WHOLE) == edition):
                 found[target] = source
         return found
