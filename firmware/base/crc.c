@@ -25,9 +25,3 @@ uint16_t crc16(const uint16_t* octets, uint16_t count) {
   for (uint16_t k = 0; k < count; k++) crc = crc16_add(crc, octets[k]);
   return crc;
 }
-
-uint32_t crc32(const uint16_t* octets, uint16_t count) {
-  uint32_t crc = CRC32_BEGIN;
-  for (uint16_t k = 0; k < count; k++) crc = crc32_add(crc, octets[k]);
-  return crc32_end(crc);
-}

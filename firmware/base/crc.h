@@ -25,9 +25,8 @@ uint32_t crc32_add(uint32_t crc, uint16_t octet);
 /// What is sent or stored of a CRC-32 that began with CRC32_BEGIN. A CRC-16 is sent as it is.
 static inline uint32_t crc32_end(uint32_t crc) { return crc ^ 0xFFFFFFFFuL; }
 
-/// Of `count` octets, from beginning to end.
+/// CRC-16 of `count` octets, from beginning to end.
 uint16_t crc16(const uint16_t* octets, uint16_t count);
-uint32_t crc32(const uint16_t* octets, uint16_t count);
 
 #if defined(__cplusplus)
 }

@@ -1,7 +1,5 @@
 #include "firmware/can/messages.h"
 
-#include <stddef.h>
-
 #include "hal/qmath/qarith.h"
 #include "hal/qmath/qcall.h"
 
@@ -10,7 +8,7 @@
 
 #define CAN_MESSAGE(message, base, octets, sender, meaning) {base, octets},
 #define CAN_FIELD(message, field, first, bits, sign, per_unit, unit, meaning)
-static const can_message_info_t messages[] = {
+const can_message_info_t can_message_infos[] = {
 #include "firmware/can/message_list.h"
 };
 #undef CAN_MESSAGE
@@ -19,22 +17,16 @@ static const can_message_info_t messages[] = {
 #define CAN_MESSAGE(message, base, octets, sender, meaning)
 #define CAN_FIELD(message, field, first, bits, sign, per_unit, unit, meaning) \
   {CAN_##message, first, bits, sign, per_unit},
-static const can_field_info_t fields[] = {
+const can_field_info_t can_field_infos[] = {
 #include "firmware/can/message_list.h"
 };
 #undef CAN_MESSAGE
 #undef CAN_FIELD
 
-const can_message_info_t* can_message_info(uint16_t message) {
-  return message < (uint16_t)CAN_MESSAGES ? &messages[message] : NULL;
-}
-
-const can_field_info_t* can_field_info(uint16_t field) { return field < (uint16_t)CAN_FIELDS ? &fields[field] : NULL; }
-
 hal_can_frame_t can_frame(can_message_t message, uint16_t node) {
   hal_can_frame_t frame = {0uL, false, 0u, {0u}};
-  frame.id = (uint16_t)(messages[message].base + node);
-  frame.length = messages[message].octets;
+  frame.id = (uint16_t)(can_message_infos[message].base + node);
+  frame.length = can_message_infos[message].octets;
   return frame;
 }
 
@@ -45,7 +37,7 @@ static int32_t clamp_to(const can_field_info_t* f, int32_t value) {
 }
 
 void can_put(hal_can_frame_t* frame, can_field_t field, int32_t value) {
-  const can_field_info_t* const f = &fields[field];
+  const can_field_info_t* const f = &can_field_infos[field];
   const uint32_t steps = (uint32_t)clamp_to(f, value);
   for (uint16_t k = 0u; k < f->bits; k++) {
     const uint16_t at = (uint16_t)(f->first + k);
@@ -56,7 +48,7 @@ void can_put(hal_can_frame_t* frame, can_field_t field, int32_t value) {
 }
 
 int32_t can_get(const hal_can_frame_t* frame, can_field_t field) {
-  const can_field_info_t* const f = &fields[field];
+  const can_field_info_t* const f = &can_field_infos[field];
   uint32_t steps = 0uL;
   for (uint16_t k = 0u; k < f->bits; k++) {
     const uint16_t at = (uint16_t)(f->first + k);
@@ -68,7 +60,7 @@ int32_t can_get(const hal_can_frame_t* frame, can_field_t field) {
 }
 
 int32_t can_steps(can_field_t field, int32_t value, uint16_t q) {
-  return qc_mul_sat(value, (int32_t)fields[field].per_unit, q);
+  return qc_mul_sat(value, (int32_t)can_field_infos[field].per_unit, q);
 }
 
 static uint16_t crc8_add(uint16_t crc, uint16_t octet) {

@@ -7,6 +7,7 @@
 #define STILLSPIN_FIRMWARE_CAN_MESSAGES_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "hal/hal_can.h"
@@ -57,9 +58,16 @@ typedef struct {
   uint16_t is_signed : 1, per_unit : 15;
 } can_field_info_t;
 
+extern const can_message_info_t can_message_infos[];
+extern const can_field_info_t can_field_infos[];
+
 /// NULL behind the last one.
-const can_message_info_t* can_message_info(uint16_t message);
-const can_field_info_t* can_field_info(uint16_t field);
+static inline const can_message_info_t* can_message_info(uint16_t message) {
+  return message < (uint16_t)CAN_MESSAGES ? &can_message_infos[message] : NULL;
+}
+static inline const can_field_info_t* can_field_info(uint16_t field) {
+  return field < (uint16_t)CAN_FIELDS ? &can_field_infos[field] : NULL;
+}
 
 /// An empty message of a node (1..31): identifier, length, zeros.
 hal_can_frame_t can_frame(can_message_t message, uint16_t node);

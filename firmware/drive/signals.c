@@ -54,11 +54,9 @@ uint16_t signal_named(const uint16_t* name, uint16_t count) {
 
 bool signal_is_left_out(uint16_t place) { return rows_have(edition_signals_left_out, place); }
 
-bool drive_signal_is_known(uint16_t place, uint16_t known) { return (table[place].needs & ~known) == 0; }
-
 signal_look_t* signal_look(uint16_t place) { return edition_signal_looks[place]; }
 
-int32_t drive_signal(uint16_t place, uint16_t known) {
+static int32_t look_at(uint16_t place, uint16_t known) {
   return (place < COUNT) ? edition_signal_looks[place](&drive, known) : 0;
 }
 
@@ -72,7 +70,7 @@ signals_seen_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_
     seen = *interrupts;
     with.time_ms = *clock;
     with.known = drive_known(&drive);
-    for (uint16_t k = 0; k < count; k++) copy[k] = drive_signal(places[k], with.known);
+    for (uint16_t k = 0; k < count; k++) copy[k] = look_at(places[k], with.known);
   } while (seen != *interrupts);
   return with;
 }

@@ -25,13 +25,9 @@ typedef struct {
   uint16_t known;    // bits of known_t: signals that need another one are 0 and say nothing
 } signals_seen_t;
 
-/// Some of them, given by their places, as one control interrupt left them. Returns what goes with that interrupt.
+/// Some of them, given by their places in signal_list.h (one that does not exist gives 0), as one control interrupt
+/// left them. Returns what goes with that interrupt.
 signals_seen_t drive_signals_copy(const uint16_t* places, uint16_t count, int32_t* values);
-/// One of them, by its place in signal_list.h, as it is now; a place that does not exist gives 0. known: as drive_known
-/// has it now, asked once for as many as are looked at together.
-int32_t drive_signal(uint16_t place, uint16_t known);
-/// Whether the signal has a value with that.
-bool drive_signal_is_known(uint16_t place, uint16_t known);
 
 typedef struct {
   packed_text_t name;

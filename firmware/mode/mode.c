@@ -26,8 +26,6 @@ uint16_t drive_known(const volatile drive_t* d) {
   return KNOWN_ROTOR | KNOWN_FRAME | beside;
 }
 
-bool drive_knows_speed(const volatile drive_t* d) { return (drive_known(d) & KNOWN_ROTOR) != 0u; }
-
 uint32_t drive_time_ms(void) { return drive.time_ms; }
 
 drive_state_t drive_state(void) { return drive.state; }

@@ -71,10 +71,6 @@ static inline bool drive_is_turning(const drive_t* d) {
   return d->state == DRIVE_RUN || d->state == DRIVE_STOP || d->flags.spins;
 }
 
-/// True where angle and speed in use are the rotor's: the power stage is on and the start has found them. With the
-/// gates off nothing is, with an encoder neither: what it counts has an angle from the start's end on, while the drive
-/// runs.
-bool drive_knows_speed(const volatile drive_t* d);
 /// Bits of known_t that are not the drive's own: the board, which has the only one, writes it at background level.
 extern uint16_t known_beside;
 /// The bits of known_t.

@@ -21,7 +21,9 @@ typedef enum {
 
 /// What is known beside the drive's own state.
 typedef enum {
-  KNOWN_ROTOR = 1,  // angle and speed are the rotor's
+  // Angle and speed in use are the rotor's: the power stage is on and the start has found them. With the gates off
+  // nothing is, with an encoder neither: what it counts has an angle from the start's end on, while the drive runs.
+  KNOWN_ROTOR = 1,
   KNOWN_FRAME = 2,  // the currents are seen in the frame that the control uses; in a start that need not be the rotor's
   KNOWN_HEAT_SINK = 4  // the board has a temperature sensor that is in use and whole
 } known_t;

@@ -105,13 +105,6 @@ void packed_copy(packed_text_t text, char* string, uint16_t room) {
   string[k] = '\0';
 }
 
-bool packed_is(packed_text_t text, const char* string) {
-  packed_reader_t r = packed_reader(text);
-  uint16_t c = packed_next(&r);
-  for (; c != 0u && c == (uint16_t)*string; string++) c = packed_next(&r);
-  return c == 0u && *string == '\0';
-}
-
 // Whether the text goes on with these characters.
 static bool goes_on_with(packed_reader_t* r, const uint16_t* wanted, uint16_t count) {
   for (uint16_t k = 0; k < count; k++) {

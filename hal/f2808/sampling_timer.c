@@ -4,11 +4,13 @@
 #include "hal/f2808/pwm_modules.h"
 #include "hal/f2808/reg_access.h"
 #include "hal/f2808/registers.h"
+#include "hal/hal_board.h"
 #include "hal/hal_replay.h"
 #include "hal/hal_sampling_timer.h"
 
 #define CLOCK_MODULE PWM_SLICE_MODULE  // its time base counts the slices
 #define TRIGGER_TICK 10u               // of the slice
+#define PAIRS_IN_SLICE 2u
 
 // At once and not from the shadow: what was meant for this period must not come any more.
 static void write_compare_now(uint16_t module, uint16_t a, uint16_t b) {
@@ -55,6 +57,13 @@ static void set_legs(uint16_t state) {
   }
 }
 
+void adc_sequence_slices(void) {
+  adc_set_lengths(PAIRS_IN_SLICE);
+  target_write16(REG_ADCCHSELSEQ3,
+                 REG_FIELD(ADCCHSELSEQ3_CONV08, BOARD_ADC_CURRENTS) | REG_FIELD(ADCCHSELSEQ3_CONV09, BOARD_ADC_SLOW));
+  adc_rearm();
+}
+
 static bool begin(uint16_t slice_ticks) {
   if (slice_ticks < HAL_SAMPLING_TIMER_MIN_TICKS || HAL_PWM_PERIOD_TICKS % slice_ticks != 0u) {
     return false;
@@ -95,6 +104,14 @@ void hal_sampling_timer_end(void) {
   if (!replay_plays()) {
     end();
   }
+}
+
+void adc_take_slice(uint16_t results[]) {
+  uint32_t currents = adc_pair(ADC_SEQ2_FIRST_RESULT);
+  if (adc_has_crosstalk) currents = adc_less_crosstalk(currents);
+  results[0] = (uint16_t)(currents & 0xFFFFuL);
+  results[1] = (uint16_t)(currents >> 16);
+  results[2] = target_read16(ADC_RESULT(ADC_SEQ2_FIRST_RESULT + 2u));
 }
 
 static void take_results(uint16_t* results) {

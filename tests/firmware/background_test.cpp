@@ -238,13 +238,16 @@ TEST(SignalTable, EverySignalHasAPlaceAndNothingIsBehindTheLast) {
   drive_reset();
   for (std::uint16_t place = 0; place < signal_count(); ++place) ASSERT_NE(signal_info(place), nullptr);
   EXPECT_EQ(signal_info(signal_count()), nullptr);
-  EXPECT_EQ(drive_signal(signal_count(), 0), 0);
+  const std::uint16_t none = signal_count();
+  std::int32_t value = 1;
+  (void)drive_signals_copy(&none, 1, &value);
+  EXPECT_EQ(value, 0);
   inside::heat_sink_q8() = 20 * 256;
   const auto last = static_cast<std::uint16_t>(signal_count() - 1);
-  EXPECT_EQ(drive_signal(last, KNOWN_HEAT_SINK), 20 * 256) << "the last of them";
-  EXPECT_EQ(drive_signal(last, 0), 0);
+  EXPECT_EQ(inside::signal(last, KNOWN_HEAT_SINK), 20 * 256) << "the last of them";
+  EXPECT_EQ(inside::signal(last, 0), 0);
   inside::state() = DRIVE_STOP;
-  EXPECT_EQ(drive_signal(0, 0), DRIVE_STOP);
+  EXPECT_EQ(inside::signal(0, 0), DRIVE_STOP);
   EXPECT_EQ(drive_signals().state, DRIVE_STOP);
 }
 

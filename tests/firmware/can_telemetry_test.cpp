@@ -69,7 +69,7 @@ TEST_F(CanTelemetry, TheStatusNamesStateFaultAndLimits) {
     const hal_can_frame_t frame = status();
     EXPECT_EQ(can_get(&frame, CAN_STATUS_STATE), state);
     EXPECT_EQ(can_get(&frame, CAN_STATUS_ENERGISED), drive_is_energised() ? 1 : 0);
-    EXPECT_EQ(can_get(&frame, CAN_STATUS_SPEED_KNOWN), drive_knows_speed(&drive) ? 1 : 0);
+    EXPECT_EQ(can_get(&frame, CAN_STATUS_SPEED_KNOWN), (drive_known(&drive) & KNOWN_ROTOR) != 0 ? 1 : 0);
   }
   inside::fault() = FAULT_OVER_CURRENT;
   inside::limits() = LIMIT_CURRENT | LIMIT_BRAKING;

@@ -240,7 +240,7 @@ TEST_F(Stepping, TheCheckSumIsOverEverySignalInItsOrder) {
   inside::low_speed_estimate().angle_bam = 0x89ABCDEF;
   std::uint32_t crc = CRC32_BEGIN;
   for (std::uint16_t k = 0; k < signal_count(); ++k) {
-    const auto value = static_cast<std::uint32_t>(drive_signal(k, drive_known(&drive)));
+    const auto value = static_cast<std::uint32_t>(inside::signal(k, drive_known(&drive)));
     for (int bit = 0; bit < 32; bit += 8) crc = crc32_add(crc, (value >> bit) & 0xFF);
   }
   EXPECT_EQ(hil_signals_crc(), crc32_end(crc));

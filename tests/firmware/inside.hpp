@@ -6,6 +6,7 @@
 
 extern "C" {
 #include "firmware/api/status.h"
+#include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 #include "firmware/sources/sources.h"
 #include "firmware/start/step.h"
@@ -98,6 +99,8 @@ inline auto& missing_windows() { return drive.supervision.missing; }
 inline auto& overruns() { return drive.supervision.overrun; }
 inline auto& stopping_periods() { return drive.supervision.stopping_periods; }
 inline auto& synchronism() { return drive.supervision.synchronism; }
+
+inline std::int32_t signal(std::uint16_t place, std::uint16_t known) { return signal_look(place)(&drive, known); }
 
 }  // namespace stillspin::test::inside
 

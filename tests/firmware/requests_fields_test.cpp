@@ -128,7 +128,7 @@ TEST_F(RequestFields, AsManySignalsAsThereMayBe) {
   Octets places, values;
   for (const std::uint16_t place : {0, 5, 9, 10, 0, 5, 9, 10, 0, 5, 9, 10, 0, 5, 10, 9}) {
     places = places + little(place, 2);
-    values = values + i32(drive_signal(place, drive_known(&drive)));
+    values = values + i32(inside::signal(place, drive_known(&drive)));
   }
   EXPECT_EQ(of(ask(REQUEST_SIGNALS, places)), values + Octets{3});
   EXPECT_EQ(ask(REQUEST_SIGNALS, little(signal_count() - 1u, 2)).body(), 5u);
@@ -260,7 +260,7 @@ TEST_F(RequestFields, AStreamTakesItsSignalsInTheirOrder) {
   inside::low_speed_estimate().angle_bam = 0x89ABCDEF;
   for (const std::uint16_t place : {9, 10, 5, 0, 9, 5, 10, 9}) {
     body = body + little(place, 2);
-    values = values + i32(drive_signal(place, drive_known(&drive)));
+    values = values + i32(inside::signal(place, drive_known(&drive)));
   }
   ASSERT_EQ(ask(REQUEST_STREAM, body).status(), OK);
   records.clear();

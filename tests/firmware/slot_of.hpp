@@ -23,10 +23,10 @@ inline std::vector<std::uint16_t> slot_of(std::uint16_t version, std::uint32_t s
     octets.resize(octets.size() + SLOT_ENTRY);
     slot_pack_entry(&entry, octets.data() + octets.size() - SLOT_ENTRY);
   }
-  const std::uint32_t crc =
-      crc32(octets.data() + SLOT_MAGIC_OCTETS, static_cast<std::uint16_t>(octets.size() - SLOT_MAGIC_OCTETS));
+  std::uint32_t crc = CRC32_BEGIN;
+  for (std::size_t k = SLOT_MAGIC_OCTETS; k < octets.size(); ++k) crc = crc32_add(crc, octets[k]);
   octets.resize(octets.size() + SLOT_CHECK);
-  slot_pack_u32(crc, octets.data() + octets.size() - SLOT_CHECK);
+  slot_pack_u32(crc32_end(crc), octets.data() + octets.size() - SLOT_CHECK);
   return octets;
 }
 

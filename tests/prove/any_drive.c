@@ -98,7 +98,6 @@ answer_status_t action_look(octet_writer_t* why) {
 void put_look(octet_writer_t* w) { put_packed(w, (packed_text_t)any_up_to((uint16_t)PACKED_TEXTS - 1u)); }
 look_outcome_t drive_look_outcome(void) { return (look_outcome_t)any_up_to(5); }
 int32_t drive_look_rpm(void) { return any_i32; }
-bool drive_knows_speed(const volatile drive_t* d) { return d->heartbeat > 0u && any_bool(); }
 uint16_t drive_known(const volatile drive_t* d) { return (uint16_t)(d->heartbeat & any_up_to(3)); }
 void drive_command_commission(void) {}
 void drive_command_speed(int32_t rpm_q16) { drive.request.speed_rpm_q16 = rpm_q16; }

@@ -73,10 +73,6 @@ bool packed_occurs(packed_text_t text, const uint16_t* wanted, uint16_t count);
 /*@ requires text < PACKED_TEXTS; assigns \result \from text; ensures \result == 0 || \result == 1; */
 bool packed_is_empty(packed_text_t text);
 
-/*@ requires text < PACKED_TEXTS && \valid_read(string);
-    assigns \result \from text, string[0]; ensures \result == 0 || \result == 1; */
-bool packed_is(packed_text_t text, const char* string);
-
 /*@ requires text < PACKED_TEXTS && room > 0 && \valid(string + (0 .. room - 1));
     assigns string[0 .. room - 1] \from text; */
 void packed_copy(packed_text_t text, char* string, uint16_t room);

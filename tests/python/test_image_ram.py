@@ -57,7 +57,7 @@ def test_what_the_drives_list_names_exists() -> None:
 def test_what_is_marked_to_run_from_ram_is_there(tmp_path: Path) -> None:
     drivers = marked(ROOT / "hal/f2808")
     assert drivers["clock.c"] == {"set_flash_timing"}
-    assert drivers["adc.c"] == {"hal_adc_read_window", "adc_take_slice"}
+    assert drivers["adc.c"] == {"hal_adc_read_window"}
     assert {"control_isr", "window_isr", "hal_irq_disable"} < drivers["irq.c"]
     assert {"write_registers", "hal_pwm_is_tripped"} < drivers["pwm.c"]
     code = RAM_CODE + "RAM void set_flash_timing(void) {}\nint there(void) { return 1; }\n"

@@ -24,7 +24,7 @@ OF_WRITING = (
     "put_text,put_unsigned,put_fixed,put_spaces_to,put_message,put_packed,packed_is_empty,packed_reader,packed_next"
 )
 OF_DECIMALS = "text_number,decimal_raw,decimal_is_whole"
-OF_TYPING = f"{OF_NAMES},{OF_DECIMALS},packed_occurs,packed_find,packed_equals,packed_is,packed_copy,suggest_is_near"
+OF_TYPING = f"{OF_NAMES},{OF_DECIMALS},packed_occurs,packed_find,packed_equals,packed_copy,suggest_is_near"
 OF_LINES = "editor_octet,editor_next,editor_show"
 OF_RECORDS = "splitter_octet,splitter_rest,record_to_wire"
 OF_FRAMES = "segment_join,segment_split_begin,segment_split_peek,segment_split_advance"
