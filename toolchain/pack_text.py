@@ -30,7 +30,7 @@ LISTS = (
     ("command_list.h", "COMMAND", 0, "TEXT_COMMAND_NAME_{0}"),
 )
 NAME = re.compile(r"TEXT_(PARAMETER|SIGNAL|COMMAND)_NAME_")  # what is looked up: the last of the texts
-BLOCK = 16  # PACKED_BLOCK: texts and entries from the beginning of a word on
+BLOCK = 32  # PACKED_BLOCK: texts and entries from the beginning of a word on
 
 
 def texts(lists: Lists = TREE) -> dict[str, str]:

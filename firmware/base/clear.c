@@ -1,6 +1,8 @@
 #include "firmware/base/clear.h"
 
+#include <stdint.h>
+
 void clear(void* at, size_t count) {
-  unsigned char* const c = at;
-  for (size_t k = 0; k < count; k++) c[k] = 0;
+  uint16_t* const words = at;
+  for (size_t k = 0; k < count / sizeof *words; k++) words[k] = 0;
 }

@@ -5,7 +5,8 @@
 
 #include <stddef.h>
 
-/// Puts `count` characters (on the C28x: words) from `at` on to zero, which is 0, false or NULL for every type there.
+/// Puts what is `count` characters long (on the C28x: words) to zero, which is 0, false or NULL for every type there.
+/// Where a character is an octet these are whole words of 16 bits, too.
 void clear(void* at, size_t count);
 
 #endif

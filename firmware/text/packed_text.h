@@ -23,7 +23,7 @@ typedef uint16_t packed_text_t;
 
 #define PACKED_NONE PACKED_TEXTS  // no text
 
-#define PACKED_BLOCK 16u  // so many texts, or entries of the dictionary, are read to find one
+#define PACKED_BLOCK 32u  // so many texts, or entries of the dictionary, are read to find one
 
 /// A place in a text.
 typedef struct {
@@ -64,7 +64,7 @@ uint16_t packed_find(packed_text_t first, uint16_t texts, const uint16_t* wanted
 /// True when these characters occur in the text; capitals count as small letters.
 bool packed_occurs(packed_text_t text, const uint16_t* wanted, uint16_t count);
 
-// What pack_text.py makes: the word of packed_bits at which every sixteenth text begins, and every sixteenth entry of
+// What pack_text.py makes: the word of packed_bits at which every 32nd text begins, and every 32nd entry of
 // the dictionary, which are in the order of their codes; how many codes have one bit, two bits and so on; the letters
 // in the order of theirs and the keys of the names (packed_find), two in a word.
 extern const uint16_t packed_starts[];

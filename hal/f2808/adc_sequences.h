@@ -21,10 +21,6 @@ void adc_sequence_windows(void);
 // Two pairs: currents, then link and auxiliary input.
 void adc_sequence_slices(void);
 
-// Of a slice: current a, current b, link.
-#define ADC_SLICE_RESULTS 3u
-void adc_take_slice(uint16_t results[]);
-
 // Back to the first slots of both sequences, without losing the triggers.
 static inline void adc_rearm(void) {
   target_write16(REG_ADCTRL2, ADCTRL2_EPWM_SOCA_SEQ1_MASK | ADCTRL2_EPWM_SOCB_SEQ2_MASK | ADCTRL2_INT_ENA_SEQ2_MASK |

@@ -106,7 +106,9 @@ void hal_sampling_timer_end(void) {
   }
 }
 
-void adc_take_slice(uint16_t results[]) {
+// Of a slice: current a, current b, link.
+#define SLICE_RESULTS 3u
+static void take_slice(uint16_t results[]) {
   uint32_t currents = adc_pair(ADC_SEQ2_FIRST_RESULT);
   if (adc_has_crosstalk) currents = adc_less_crosstalk(currents);
   results[0] = (uint16_t)(currents & 0xFFFFuL);
@@ -115,17 +117,17 @@ void adc_take_slice(uint16_t results[]) {
 }
 
 static void take_results(uint16_t* results) {
-  adc_take_slice(results);
+  take_slice(results);
   adc_rearm();
   target_write16(REG_ADCST, ADCST_INT_SEQ1_CLR_MASK | ADCST_INT_SEQ2_CLR_MASK);
   pie_acknowledge(PIE_GROUP(VECTOR_SEQ2INT));
-  replay_note_results(results, ADC_SLICE_RESULTS);
+  replay_note_results(results, SLICE_RESULTS);
 }
 
 void hal_sampling_timer_read(hal_timed_samples_t* slice) {
-  uint16_t results[ADC_SLICE_RESULTS];
+  uint16_t results[SLICE_RESULTS];
   if (replay_plays()) {
-    replay_take_results(results, ADC_SLICE_RESULTS);
+    replay_take_results(results, SLICE_RESULTS);
   } else {
     take_results(results);
   }

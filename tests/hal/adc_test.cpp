@@ -1,5 +1,6 @@
 #include "hal/f2808/registers.h"
 #include "hal/hal_adc.h"
+#include "hal/hal_sampling_timer.h"
 #include "hal/hal_time.h"
 #include "tests/hal/bus_test.hpp"
 
@@ -79,11 +80,11 @@ TEST_F(Adc, second_channels_are_freed_of_the_crosstalk_before_revision_c) {
     EXPECT_EQ(window.end_b, 3 * (early ? 990 : 1000));
     EXPECT_EQ(window.link, 2560);
     EXPECT_EQ(window.aux, early ? 0 : 4);
-    std::uint16_t slice[ADC_SLICE_RESULTS];
-    adc_take_slice(slice);
-    EXPECT_EQ(slice[0], 2560);
-    EXPECT_EQ(slice[1], early ? 990 : 1000);
-    EXPECT_EQ(slice[2], 2560);
+    hal_timed_samples_t slice = {};
+    hal_sampling_timer_read(&slice);
+    EXPECT_EQ(slice.current_a, 2560);
+    EXPECT_EQ(slice.current_b, early ? 990 : 1000);
+    EXPECT_EQ(slice.link, 2560);
   }
 }
 
@@ -170,9 +171,11 @@ TEST_F(Adc, slices_are_a_pair_of_currents_and_the_slow_pair) {
   EXPECT_EQ(bus.words[REG_ADCCHSELSEQ3] & 0x00FFu, 0x0010u);
   EXPECT_EQ(bus.steps.at(bus.last_write_of_all()).address, REG_ADCTRL2) << "armed last";
   for (std::uint16_t n = 0; n < 16; ++n) bus.words[REG_MIRROR_ADCRESULT0 + n] = static_cast<std::uint16_t>(100 + n);
-  std::uint16_t slice[ADC_SLICE_RESULTS];
-  adc_take_slice(slice);
-  for (std::uint16_t n = 0; n < ADC_SLICE_RESULTS; ++n) EXPECT_EQ(slice[n], 108 + n);
+  hal_timed_samples_t slice = {};
+  hal_sampling_timer_read(&slice);
+  EXPECT_EQ(slice.current_a, 108);
+  EXPECT_EQ(slice.current_b, 109);
+  EXPECT_EQ(slice.link, 110);
   adc_sequence_windows();
   EXPECT_EQ(bus.words[REG_ADCMAXCONV], 0x0033u);
   EXPECT_EQ(bus.words[REG_ADCCHSELSEQ3], 0x1000u);
