@@ -97,3 +97,12 @@ def not_stated(plant: core.Plant, stated: Mapping[str, float], known: Mapping[st
         for where, name in open_
         if name in known
     )
+
+
+def by_rule(assumed: core.Plant, schema: core.Schema) -> tuple[str, ...]:
+    """What a motor's file leaves out and a rule has instead, in words."""
+    return tuple(
+        f"{section}.{key} is not stated; by rule it is {value:g} {schema[section][key].unit}"
+        for section, keys in assumed.items()
+        for key, value in keys.items()
+    )

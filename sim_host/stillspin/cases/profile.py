@@ -57,6 +57,7 @@ class _File:
     name: str
     description: str
     plant: core.Plant
+    assumed: core.Plant
     parameters: dict[str, float]
     commission: bool
     sized: bool
@@ -100,7 +101,10 @@ def load(
         {**follows, **machine.parameters, **effects.parameters},
         effects.commission,
         machine.name,
-        nameplate.not_stated(machine.plant, machine.parameters, known),
+        (
+            *nameplate.not_stated(machine.plant, machine.parameters, known),
+            *nameplate.by_rule(machine.assumed, schema),
+        ),
         tuple(name for name in sized if name not in effects.parameters),
     )
 
@@ -135,13 +139,14 @@ def _read(kind: str, name: str, schema: core.Schema, known: Mapping[str, Entry])
         if section in data
     }
     plant = flux_table.stated(plant, path)
+    assumed = similarity.assumed(plant) if kind == "motor" else {}
     parameters = {name: float(known[name].value(value)) for name, value in data.get("parameters", {}).items()}
     description, commission, sized = (
         data.get("description", ""),
         data.get("commission", False),
         data.get("sized", False),
     )
-    return _File(path.stem, description.strip(), plant, parameters, commission, sized)
+    return _File(path.stem, description.strip(), merged(plant, assumed), assumed, parameters, commission, sized)
 
 
 def merged(*plants: Mapping[str, Mapping[str, Value]]) -> core.Plant:

@@ -146,11 +146,9 @@ inductance_d = {machine["inductance_d"]:g}  # H
 inductance_q = {machine["inductance_q"]:g}  # H
 magnet_flux = {machine["magnet_flux"]:.6g}  # Vs, peak
 rated_peak_current = {machine["rated_peak_current"]:.6g}  # A
-cross_inductance = 0.0  # H, not on a nameplate
 
 [mechanics]
 inertia = {found["mechanics"]["inertia"]:g}  # kg m2, rotor and load
-viscous_friction = 0.0  # N m s, not on a nameplate
 
 [link]
 source_voltage = {link["source_voltage"]:g}  # V

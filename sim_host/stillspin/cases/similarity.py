@@ -32,6 +32,9 @@ _NOISE_MOST = 4.0
 _LEVELS_ABOVE = 2.2  # times the ripple, and a tenth to spare
 _TRIP_SHARE = 1.5  # of which the ripple has the rest
 _PULSE_LEAST = 24.0  # us, with the usual settle time
+_LEFT = 1.0 / (1.0 + 0.5**2)  # of Lqq at rated current (sim_host/plant/machine.cpp)
+_TURNED = math.tan(2.0 * math.radians(5.0))  # of the axis there
+_FRICTION = 1.0 / 32.0  # of the rated torque, at the base speed
 _DIGITS = 3  # that count; one more is kept
 _NEEDED = {
     "machine": ("pole_pairs", "inductance_d", "inductance_q", "magnet_flux", "rated_peak_current"),
@@ -143,6 +146,24 @@ def of(plant: core.Plant) -> Size | None:
     stated = [float(plant[section][key]) for section, keys in _NEEDED.items() for key in keys]
     values = [*stated, float(plant.get("adc", {}).get("current_range", _RANGE))]
     return Size(*values) if min(values) > 0.0 else None
+
+
+def assumed(plant: core.Plant) -> core.Plant:
+    """What no nameplate says, where a motor's file does not either: by rules, as for the motors of the catalogue.
+
+    The saliency's axis turns by 5 degrees at rated current where the plant's saturation leaves saliency there: Lqq is
+    four fifths of Lq then. A machine whose table of fluxes is read has its own. At the base speed the friction takes
+    a share of the rated torque.
+    """
+    size, found = of(plant), core.Plant()
+    machine = plant.get("machine", {})
+    if size and "flux_map" not in machine and "cross_inductance" not in machine:
+        left = max(_LEFT * size.inductance_q - size.inductance_d, 0.0)
+        found["machine"] = {"cross_inductance": float(f"{left * _TURNED / 2.0:.{_DIGITS}g}")}
+    if size and "viscous_friction" not in plant.get("mechanics", {}):
+        share = _FRICTION * size.torque / size.base_speed
+        found["mechanics"] = {"viscous_friction": float(f"{share:.{_DIGITS}g}")}
+    return found
 
 
 def noise(plant: core.Plant) -> float:
