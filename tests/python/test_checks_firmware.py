@@ -190,6 +190,18 @@ PERIOD = {
         "  clear(d, sizeof *d);",
         "  clear(&drive, sizeof drive);",
         "  d->position = other;",
+        "  d->supervision.overrun++;",
+        "  drive_supervision_t* const v = &d->supervision; v->judged_at = d->heartbeat;",
+        "  clear(&d->supervision, sizeof d->supervision);",
+        "  d->request.start = true;",
+        "  drive_request_t* const r = &d->request; r->speed = false;",
+        "  d->limits |= LIMIT_VOLTAGE;",
+        "  d->fault = FAULT_NONE;",
+        "  d->heartbeat++;",
+        "  d->source = &avv_source;",
+        "  d->control.ramp.value = 0;",
+        "  d->control.speed_ready = true;",
+        "  machine_model_t* const m = &d->model; m->yd_q30 = 0;",
         "  drive.control = other;",
         "  drive_control_t* const c = &d->control;  *c = other;",
         "  *d = other;",
@@ -225,9 +237,52 @@ def test_member_of_a_period_that_is_read_passes(tmp_path: Path, line: str) -> No
     assert writers.check(tmp_path) == []
 
 
+@pytest.mark.parametrize(
+    ("path", "line"),
+    [
+        ("firmware/mode/mode.c", "d->flags.shorted = true;"),  # it clears them all
+        ("firmware/start/start.c", "d->flags.frozen = true;"),  # of COMMISSION
+        ("firmware/start/start.c", "d->flags = none;"),
+        ("firmware/start/start.c", "d->modulation.running = 0;"),
+        ("firmware/drive/speed.c", "d->control.references.closed = true;"),
+        ("firmware/mode/mode.c", "d->control.references.feed_forward_q16 = 0;"),
+        ("firmware/drive/protection.c", "d->supervision.missing = 0;"),
+    ],
+)
+def test_member_that_the_writer_of_its_neighbour_writes_is_caught(tmp_path: Path, path: str, line: str) -> None:
+    plant(tmp_path, path, f"void act(drive_t* d) {{\n  {line}\n}}\n")
+    assert [(f.path, f.line) for f in writers.check(tmp_path)] == [(path, 2)]
+
+
+def test_member_without_a_writer_is_caught(tmp_path: Path) -> None:
+    known = "typedef struct drive {\n  drive_state_t state;\n  drive_control_t control;\n"
+    plant(tmp_path, writers.DRIVE, f"{known}  const int32_t *seen, old[2];\n}} drive_t;\n")
+    control = "typedef struct {\n  ramp_t ramp;  // of speed\n  volatile bool ready;\n} drive_control_t;\n"
+    group = plant(tmp_path, "firmware/interfaces/period.h", control)
+    found = [(f.path, f.line, f.message.partition(":")[0].split()[-1]) for f in writers.check(tmp_path)]
+    place = "firmware/interfaces/period.h"
+    assert found == [(place, 3, "control.ready"), (writers.DRIVE, 4, "seen"), (writers.DRIVE, 4, "old")]
+    group.write_text(control.replace("ready", "speed_ready"), encoding="utf-8")
+    plant(tmp_path, writers.DRIVE, f"{known}}} drive_t;\n")
+    assert writers.check(tmp_path) == []
+
+
+def test_every_member_of_the_drive_is_looked_at() -> None:
+    seen = writers.members(ROOT)
+    assert {"state", "sliced", "source", "config", "request.speed_rpm_q16", "flags.over", "position.frames"} <= set(
+        seen
+    )
+    groups = {name for name in writers.GROUPS.values() if any(member.startswith(f"{name}.") for member in seen)}
+    assert groups == set(writers.GROUPS.values()) - {
+        "model",
+        "trim",
+    }  # which lie below the drive, each a row of its own
+
+
 def test_each_writer_writes() -> None:
     assert writers.check(ROOT) == []
     writes = writers.Writes(ROOT)
     for member, owners in writers.WRITERS.items():
         found = {file for source in writes.texts for _, to in writes.of(source, member) for file in (source, to)}
         assert all(any(path.startswith(owner) for path in found) for owner in owners), member
+    assert all(list(writes.whole(owner, group)) for group, owners in writers.AT_ONCE.items() for owner in owners)

@@ -2,7 +2,8 @@
 
 A write is an assignment to the member, by its path in the drive or by a pointer to the group that it lies in; a pointer
 to it through which it may be written; and such a pointer handed to a function. A group whose members have several
-writers, and the drive as a whole, are written at once where they are made, and nowhere else.
+writers, and the drive as a whole, are written at once where they are made, and nowhere else but for AT_ONCE. A member
+that has no row is a finding as well: each one has its writer.
 """
 
 import re
@@ -21,7 +22,12 @@ GROUPS = {
     "drive_modulation_t": "modulation",
     "schedule_t": "schedule",
     "state_flags_t": "flags",
+    "drive_supervision_t": "supervision",
+    "drive_request_t": "request",
+    "machine_model_t": "model",
+    "slopes_trim_t": "trim",
 }
+DRIVE = "firmware/mode/mode.h"  # says what the drive has
 _STATES = ("firmware/start/", "firmware/commissioning/")  # START and COMMISSION
 _FRESH = "firmware/drive/reset.c"  # the state after power-on
 _SLICED = "firmware/hysteresis/hysteresis.c"  # in the place of windows
@@ -36,21 +42,74 @@ WRITERS: dict[str, tuple[str, ...]] = {
     "position.seen_q20": ("firmware/drive/position.c",),
     "position.frames": ("firmware/drive/position.c",),
     "position.torque_accel_q8": ("firmware/drive/position.c",),
+    "supervision.missing": ("firmware/drive/sampling.c", _SLICED),
+    "supervision.diverged_periods": ("firmware/drive/protection.c",),
+    "supervision.judged_at": ("firmware/drive/protection.c",),
+    "supervision.judged_bam": ("firmware/drive/protection.c",),
+    "supervision.synchronism": ("firmware/drive/protection.c",),
+    "supervision.stopping_periods": ("firmware/drive/sequence.c",),
+    "supervision.overrun": ("firmware/drive/modulation.c",),
     "state": ("firmware/mode/mode.c",),
+    "fault": ("firmware/mode/mode.c", "firmware/drive/sequence.c"),  # raised; acknowledged
+    "periods": ("firmware/drive/sequence.c", "firmware/mode/mode.c"),
+    "heartbeat": ("firmware/drive/sequence.c",),
+    "settled_at": ("firmware/drive/sequence.c", "firmware/mode/mode.c"),
+    "zero_current_a_q8": ("firmware/drive/sequence.c", _FRESH),
+    "zero_current_b_q8": ("firmware/drive/sequence.c", _FRESH),
+    "offset_residual_q8": ("firmware/drive/sequence.c",),
+    "wiring": ("firmware/start/",),
     "flags": (*_STATES, "firmware/mode/mode.c"),
+    "flags.behind": (*_STATES,),
+    "flags.invalid": ("firmware/start/",),
+    "flags.gates_off": ("firmware/start/",),
+    "flags.shorted": ("firmware/start/",),
+    "flags.wants_exclusive": ("firmware/start/",),
+    "flags.caught": ("firmware/start/",),
+    "flags.open_loop": ("firmware/start/",),
+    "flags.spins": (*_STATES, "firmware/mode/mode.c"),
+    "flags.frozen": ("firmware/commissioning/",),
+    "flags.over": ("firmware/commissioning/",),
     "control.references": (
         *_STATES,
         "firmware/drive/speed.c",  # RUN, STOP and a spin
         "firmware/mode/mode.c",  # the power stage opens
     ),
+    "control.references.current_q20": (*_STATES, "firmware/drive/speed.c"),
+    "control.references.feed_forward_q16": ("firmware/commissioning/",),
+    "control.references.closed": (*_STATES, "firmware/mode/mode.c"),
     "control.command_rpm_q16": ("firmware/drive/sequence.c", "firmware/mode/mode.c"),
     "control.target_bpp": ("firmware/drive/sequence.c", "firmware/mode/mode.c", "firmware/commissioning/spin.c"),
     "control.weakening_q20": ("firmware/drive/speed.c",),
     "control.headroom_q20": ("firmware/drive/speed.c",),
     "control.braking_headroom_q20": ("firmware/drive/speed.c",),
     "control.per_torque_constant": ("firmware/drive/speed.c", _FRESH),
+    "time_ms": ("firmware/drive/speed.c",),
+    "limits": ("firmware/drive/speed.c", "firmware/drive/modulation.c"),  # of current and speed; of voltage and time
     "control.command_q16": ("firmware/drive/current.c",),
     "modulation": ("firmware/drive/modulation.c", "firmware/start/start.c", _FRESH),
+    "modulation.state": ("firmware/drive/modulation.c", "firmware/start/start.c"),
+    "modulation.patterns": ("firmware/drive/modulation.c",),
+    "modulation.sampled": ("firmware/drive/modulation.c",),
+    "modulation.running": ("firmware/drive/modulation.c",),
+    "modulation.command_q16": ("firmware/drive/modulation.c",),
+    "sliced": (_SLICED,),
+    # Controllers: their step, and who lets them begin.
+    "control.speed": (
+        "firmware/drive/speed.c",
+        "firmware/drive/inertia.c",
+        "firmware/drive/hand_over.c",
+        "firmware/start/",
+        "firmware/drive/reload.c",
+        _FRESH,
+    ),
+    "control.weakening": ("firmware/drive/speed.c", "firmware/start/"),
+    "control.ramp": ("firmware/drive/speed.c", "firmware/drive/hand_over.c", "firmware/start/"),
+    "control.position_hold": ("firmware/drive/speed.c", "firmware/start/start.c"),
+    "control.current": (
+        "firmware/drive/current.c",
+        "firmware/drive/modulation.c",  # what the voltage limit has cut off
+        "firmware/start/if_start/",
+    ),
     # Of more than one: who learns or carries something on.
     "model": (
         "firmware/drive/position.c",  # to the operating point
@@ -81,6 +140,35 @@ WRITERS: dict[str, tuple[str, ...]] = {
     ),
     # By the background level, between two control interrupts.
     "config": ("firmware/drive/reload.c", "firmware/commissioning/sequence.c", _FRESH),
+    "config_valid": ("firmware/drive/reload.c", "firmware/boot/main.c", _FRESH),
+    "conflict": ("firmware/drive/reload.c",),
+    "conflict_known": ("firmware/drive/reload.c",),
+    "source": (
+        "firmware/drive/reload.c",
+        "firmware/commissioning/spin.c",  # a rotor that only a current vector turns
+        _FRESH,
+    ),
+    "control.speed_ready": ("firmware/drive/reload.c", _FRESH),
+    "control.current_limit_q20": ("firmware/drive/reload.c", "firmware/board/functions.c", _FRESH),
+    # Asked for at background level, taken in the period.
+    "request.start": ("firmware/mode/commands.c", "firmware/drive/sequence.c"),
+    "request.stop": ("firmware/mode/commands.c", "firmware/drive/sequence.c"),
+    "request.coast": ("firmware/mode/commands.c", "firmware/drive/sequence.c"),
+    "request.reset": ("firmware/mode/commands.c", "firmware/drive/sequence.c"),
+    "request.begin": (
+        "firmware/mode/commands.c",
+        "firmware/start/flying/look.c",
+        "firmware/commissioning/sequence.c",
+        "firmware/drive/sequence.c",
+    ),
+    "request.speed": ("firmware/mode/commands.c", "firmware/drive/sequence.c", "firmware/mode/mode.c"),
+    "request.speed_rpm_q16": ("firmware/mode/commands.c",),
+    "request.reload": ("firmware/mode/commands.c", "firmware/drive/reload.c"),
+}
+# Groups that begin anew as a whole, beside _FRESH.
+AT_ONCE: dict[str, tuple[str, ...]] = {
+    "flags": ("firmware/mode/mode.c",),  # with each state
+    "supervision": ("firmware/start/start.c",),  # with each start
 }
 ALL = ("control", "svpwm", "estimators", "firmware")
 _ANY = r"[a-z]\w*"
@@ -170,6 +258,8 @@ class Writes:
         """Where a file writes a member, and the file of the function that does it for it, if one does."""
         text = self.texts[source]
         group, _, member = path.partition(".")
+        if (member or group).rpartition(".")[2] not in text:  # the types of GROUPS have their group's name
+            return
         types = [name for name, of in GROUPS.items() if of == group]
         aliases = re.findall(rf"(?<!const )\b(?:{'|'.join(types) or '(?!)'})\s*\*\s*(?:const\s+)?(\w+)", text)
         way = rf"(?:\bd->|\bdrive\.){group}\b" + (rf"\.{member}\b" if member else "")
@@ -185,22 +275,53 @@ class Writes:
                 yield match.start(), writer
 
 
+_STRUCT = re.compile(r"\btypedef struct(?: \w+)? \{([^{}]*)\} (\w+);")
+_MEMBER = re.compile(r"(\w+)(?:\s*\[[^\]]*\])*\s*[,;]")
+
+
+def members(root: Path) -> dict[str, tuple[str, int]]:
+    """Each member of the drive, and of each of its groups in firmware/, by its path: where it is declared."""
+    found: dict[str, tuple[str, int]] = {}
+    for path in sorted((root / "firmware").rglob("*.h")):
+        text, source = code(path), path.relative_to(root).as_posix()
+        for struct in _STRUCT.finditer(text):
+            if struct[2] not in GROUPS and (struct[2] != "drive_t" or source != DRIVE):
+                continue
+            group = GROUPS.get(struct[2], "")
+            for member in _MEMBER.finditer(struct[1]):
+                line = text.count("\n", 0, struct.start(1) + member.start()) + 1
+                found[f"{group}.{member[1]}" if group else member[1]] = (source, line)
+    return found
+
+
+def _without_writer(root: Path) -> list[Finding]:
+    declared = members(root)
+    groups = {name.partition(".")[0] for name in declared if "." in name}
+    by_member = {path.partition(".")[0] for path in WRITERS if "." in path}
+    return [
+        Finding(source, line, f"nobody is named as the writer of {name}: it gets a row in toolchain/checks/writers.py")
+        for name, (source, line) in declared.items()
+        if name not in WRITERS and name not in groups
+        if (group := name.partition(".")[0]) == name or group in by_member or group not in WRITERS
+    ]
+
+
 def check(root: Path) -> list[Finding]:
-    """Findings for members of the drive that somebody else writes."""
+    """Findings for members of the drive that somebody else writes, one a line, or that nobody is named for."""
     writes = Writes(root)
-    groups = sorted({path.partition(".")[0] for path in WRITERS if "." in path})
-    at_once = [
-        Finding(source, text.count("\n", 0, place) + 1, f"writes {group or 'the drive'} as a whole; only {_FRESH} does")
-        for group in (*groups, "")
-        for source, text in writes.texts.items()
-        if source != _FRESH
-        for place in writes.whole(source, group)
-    ]
-    return at_once + [
-        Finding(source, text.count("\n", 0, place) + 1, f"writes {path}, which is {owners[0]}'s to write")
-        for path, owners in WRITERS.items()
-        for source, text in writes.texts.items()
-        if not source.startswith(owners)
-        for place, writer in writes.of(source, path)
-        if not writer.startswith(owners)
-    ]
+    said: dict[tuple[str, int], str] = {}
+    for path, owners in WRITERS.items():
+        for source, text in writes.texts.items():
+            if source.startswith(owners):
+                continue
+            for place, writer in writes.of(source, path):
+                if not writer.startswith(owners):
+                    line = text.count("\n", 0, place) + 1
+                    said[source, line] = f"writes {path}, which is {owners[0]}'s to write"
+    for group in ("", *sorted({path.partition(".")[0] for path in WRITERS if "." in path})):
+        owners = (_FRESH, *AT_ONCE.get(group, ()))
+        for source in writes.texts.keys() - set(owners):
+            for place in writes.whole(source, group):
+                line = writes.texts[source].count("\n", 0, place) + 1
+                said[source, line] = f"writes {group or 'the drive'} as a whole; only {' and '.join(owners)} may"
+    return [Finding(*place, message) for place, message in sorted(said.items())] + _without_writer(root)
