@@ -298,7 +298,7 @@ PARTS = (
     ),
     of_link("blocks", FRAMES, ("-eva-auto-loop-unroll", "300")),
     of_link("framing", FRAMES, APART, OF_BLOCKS),
-    of_link("store", STORE, READER, OF_QMATH),
+    of_link("store", STORE, READER, *(OF_QMATH, "q_shl_sat")),
     of_link("kernel", KERNEL, ROUNDS, *(OF_QMATH, OF_RECORDS)),
     of_link("selftest", SELFTEST, ("-eva-auto-loop-unroll", "16", "-eva-slevel", "20"), *(OF_QMATH, OF_WRITING)),
     eva(
