@@ -18,6 +18,22 @@ def program(name):
     return assemble_files([PROGRAMS / f"{name}.asm"])
 
 
+def parts_of(name):
+    """Names of the files that a program is written in, its own first."""
+    return list(dict.fromkeys([f"{name}.asm", *(line.file for line in program(name).lines.values())]))
+
+
+def changed_file(folder, name, part, old, new):
+    """The program's source in another folder, with a piece of one of its files changed where it stands first."""
+    for file in parts_of(name):
+        text = (PROGRAMS / file).read_text()
+        if file == part:
+            assert old in text
+            text = text.replace(old, new, 1)
+        (folder / file).write_text(text)
+    return folder / f"{name}.asm"
+
+
 def linked_file(folder, name, sources=()):
     """The program as a file with labels and lines; of other sources when there are some."""
     made = assemble_files(list(sources) or [PROGRAMS / f"{name}.asm"])

@@ -1,4 +1,4 @@
-"""The program tests/c28x/programs/loop.asm beside what it should compute: built, modelled, and stepped through a run.
+"""The control program of tests/c28x/programs as a board in the loop: built, modelled, and stepped through a run.
 
 Its model here is of its own: Python's integers, and the answers as firmware/hil/hil.h has them.
 """
@@ -9,46 +9,41 @@ import struct
 import zlib
 from types import SimpleNamespace
 
-from c28x_chip import PROGRAMS, linked_file
+from c28x_chip import changed_file
 
+from stillspin.c28x import linked
+from stillspin.c28x.program import assemble_files
 from stillspin.drive.protocol import Request
 from stillspin.link.records import Record, to_wire
 from stillspin.link.splitter import Splitter
 
-PLACES = {
-    "STATE": "state",
-    "WINDOWS": "windows",
-    "LINK": "link_voltage",
-    "A": "current_a",
-    "B": "current_b",
-    "INTEGRAL": "current_q_reference",
-}
-"""The signals that it has, by its own names; all others of the table stay zero."""
+PLACES = "state", "windows", "link_voltage", "current_a", "current_b", "current_q_reference"
+"""The signals that it has, in the order of its settings; all others of the table stay zero."""
+_FAST = 31
+"""Divider of the serial port: 390625 bit/s."""
 _NAME = 20
 _SIGN = 1 << 31
 
 
 def built(folder, identity, names, change=("", "")):
-    """The program as a file, with what a drive calls itself, its signals' names, and a piece of its text changed."""
-    words = [f"        .word {','.join(map(str, row))}" for row in ((len(identity),), identity)]
-    padded = [name.encode().ljust(_NAME, b"\0") for name in names]
-    lines = [
-        f"COUNT   .set {len(names)}",
-        f"NAME    .set {_NAME}",
-        "        .org 0x3F6000",
-        "IDENTITY:",
-        *words,
-        "NAMES:",
-    ]
-    lines += [f"        .word {','.join(map(str, row))}" for row in padded]
-    lines += [f"AT_{place} .set {names.index(name)}" for place, name in PLACES.items()]
-    (folder / "identity.asm").write_text("\n".join(lines) + "\n")
-    for name in ("start.asm", "records.asm", "deltas.asm"):
-        (folder / name).write_text((PROGRAMS / name).read_text())
-    text = (PROGRAMS / "loop.asm").read_text()
-    assert change[0] in text
-    (folder / "loop.asm").write_text(text.replace(*change, 1))
-    return linked_file(folder, "loop", [folder / "loop.asm"])
+    """The program as a file, with what a drive calls itself, its signals' names, and a piece of its text changed.
+
+    All that is the drive's stands in the settings: without a change the code is that of `program("control")`.
+    """
+    made = assemble_files([changed_file(folder, "control", "loop.asm", *change)])
+    at, words = made.symbols, made.words
+    words[at["RATE"]] = _FAST
+    words[at["KNOWN"]] = 2 * len(names) - 1
+    settings = {
+        "PLACES": [2 * names.index(name) for name in PLACES],
+        "IDENTITY": [len(identity), *identity],
+        "NAMES": [octet for name in names for octet in name.encode().ljust(_NAME, b"\0")],
+    }
+    for name, values in settings.items():
+        words.update(enumerate(values, at[name]))
+    file = folder / "control.out"
+    file.write_bytes(linked.to_elf(made, 0x3F7FF6))
+    return file
 
 
 class _Reader:

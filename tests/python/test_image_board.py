@@ -1,6 +1,7 @@
 """Machine code on the virtual board, with its plant and its plugs, and from the command line."""
 
 import os
+import re
 import select
 import subprocess
 import sys
@@ -112,25 +113,32 @@ def test_words_for_no_memory_of_the_board_are_said_by_their_place(first, words):
         blocks_of(Program((Block(0x3F7FF6, (0x6F00,)), Block(first, (1, 2, 3)))), "x")
 
 
-@pytest.mark.parametrize("encode", [coff, intel_hex])
-def test_the_board_runs_a_file_behind_a_port(tmp_path, encode):
-    image, port = tmp_path / "echo.out", tmp_path / "port"
-    image.write_bytes(encode(file_blocks("echo")))
+@pytest.mark.parametrize(
+    ("name", "encode", "said", "answer"),
+    [
+        ("echo", coff, b"abc", rb"ABC"),
+        ("echo", intel_hex, b"abc", rb"ABC"),
+        ("control", coff, b"\x40", rb"[\x7c-\x84]"),  # the converter's middle, in sixteens of codes
+    ],
+)
+def test_the_board_runs_a_file_behind_a_port(tmp_path, name, encode, said, answer):
+    image, port = tmp_path / f"{name}.out", tmp_path / "port"
+    image.write_bytes(encode(file_blocks(name)))
     command = [sys.executable, "-m", "stillspin", "board", "--image", image, "--serial-link", port, "--for", "20"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
         try:
-            assert "executes echo.out" in process.stdout.readline()
+            assert f"executes {name}.out" in process.stdout.readline()
             deadline = time.monotonic() + 30
             while not port.exists() and time.monotonic() < deadline:
                 time.sleep(0.02)
             line = os.open(port, os.O_RDWR | os.O_NOCTTY)
             heard = b""
-            while b"ABC" not in heard and time.monotonic() < deadline:
-                os.write(line, b"abc")
+            while not re.search(answer, heard) and time.monotonic() < deadline:
+                os.write(line, said)
                 while select.select([line], [], [], 0.3)[0]:
                     heard += os.read(line, 64)
             os.close(line)
-            assert b"ABC" in heard
+            assert re.search(answer, heard)
         finally:
             process.terminate()
             process.wait(timeout=20)

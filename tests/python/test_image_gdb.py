@@ -283,12 +283,15 @@ def test_packets_come_in_pieces_and_broken():
     assert Line().take(b"+$g#67") == (["g"], b"+")
 
 
-@contextlib.contextmanager
-def served(tmp_path, text):
-    """A client of a program's board, in a process of its own."""
+def assembled(tmp_path, text):
     source = tmp_path / "trap.asm"
     source.write_text(text)
-    image = linked_file(tmp_path, "trap", [source])
+    return linked_file(tmp_path, "trap", [source])
+
+
+@contextlib.contextmanager
+def served(image):
+    """A client of a program's board, in a process of its own."""
     command = [sys.executable, "-m", "stillspin", "board", "--image", image, "--gdb", "0", "--speed", "0", "--for", "1"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
         try:
@@ -300,9 +303,19 @@ def served(tmp_path, text):
             process.wait(timeout=20)
 
 
+def test_the_command_serves_the_control_program(tmp_path):
+    image = linked_file(tmp_path, "control")
+    at = opened.read(image).names.addresses
+    with served(image) as client:
+        client.ask(f"Z0,{at['sample']:x},2")
+        for count in range(3):
+            assert client.ask("c") == "S05"
+            assert (client.register("PC"), client.word(at["COUNT"])) == (at["sample"], count)
+
+
 def test_a_trap_instruction_stops_and_goes_on(tmp_path):
     text = " .org 0x3F7FF6\n LB start\n .org 0x3F4000\nstart: NOP\nhere: ESTOP0\n NOP\nstay: B stay,UNC\n"
-    with served(tmp_path, text) as client:
+    with served(assembled(tmp_path, text)) as client:
         assert client.ask("c") == "S05"
         assert client.register("PC") == 0x3F4001
         assert client.ask("s") == "S05"
@@ -324,7 +337,7 @@ again:  B again,UNC
 
 @pytest.mark.parametrize(("go_on", "behind"), [("s", 0x66), ("c", 0x67)])
 def test_what_is_no_instruction_stops_before_it_traps(tmp_path, go_on, behind):
-    with served(tmp_path, ILLEGAL) as client:
+    with served(assembled(tmp_path, ILLEGAL)) as client:
         assert client.ask("c") == "S04"
         assert client.register("PC") == 0x3F4001
         assert client.ask("?") == "S04"

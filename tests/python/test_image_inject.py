@@ -103,6 +103,14 @@ def test_the_control_program_s_loop_stands_it(tried):
     assert report.differences == []
 
 
+def test_the_command_says_that_the_control_program_stands_it(tmp_path):
+    image = linked_file(tmp_path, "control")
+    stretch = ["--interrupt", "INT1.1", "--after", "0.03", "--from", "beside", "--to", "beside"]
+    done = stillspin("image", "inject", image, *stretch)
+    assert done.exit_code == 0, done.stderr
+    assert "each time" in done.stdout
+
+
 def test_the_set_up_of_the_interrupts_stands_it(tried):
     """From the permission on: the background of `nested` goes to sleep, and the timer comes by itself."""
     at = program("nested").symbols

@@ -1,8 +1,9 @@
 """`hil --image`: an image in the loop, from the board that executes it to the difference that is named.
 
-Nobody here has an image of the drive. The program is one of this project's assembler that speaks the protocol and
-computes something of its own, which no native drive computes; so what the drive's run brought is held against what the
-program should compute, in the place of the native drive's answers, and all else is what a user's image goes through.
+Nobody here has an image of the drive. The program is the control program of this project's assembler: it speaks the
+protocol, and in a step computes something of its own, which no native drive computes; so what the drive's run brought
+is held against what the program should compute, in the place of the native drive's answers, and all else is what a
+user's image goes through.
 """
 
 from contextlib import suppress
@@ -10,10 +11,12 @@ from dataclasses import replace
 
 import loop_program
 import pytest
+from c28x_chip import linked_file
 from desk import board as board_process
 from typer.testing import CliRunner
 
 from stillspin import cli, core
+from stillspin.board.image import blocks_of
 from stillspin.cases import profile, scenario_file
 from stillspin.drive import describe
 from stillspin.drive.connect import connect
@@ -24,10 +27,15 @@ from stillspin.exit_codes import ExitCode
 from stillspin.hil import Loop, boards, campaign
 from stillspin.hil.runs import LoopRun
 from stillspin.hil.wish import Wish
-from stillspin.link.errors import NoAnswerError
+from stillspin.image import opened
+from stillspin.image.serial_client import SerialClient
+from stillspin.link.errors import NoAnswerError, RefusedError
 from stillspin.runs import execute
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
+
+SETTINGS, ENTRY = 0x3F6000, 0x3F7FF6
+CMPA = 0x6809
 
 
 class Noting:
@@ -113,6 +121,52 @@ def modelled(requests, names):
         if request[0] == Request.HIL_STEP:
             model.answer(request[1:])
             yield model
+
+
+def code(file):
+    """Without the settings, which say whose table it has."""
+    blocks = blocks_of(opened.read(file).program, str(file))
+    words = {first + place: word for first, block in blocks for place, word in enumerate(block)}
+    return {address: word for address, word in words.items() if not SETTINGS <= address < ENTRY}
+
+
+@pytest.fixture
+def powered(drive, tmp_path):
+    """A board that has just been switched on, the program's names, and a client at its port."""
+    image = opened.read(loop_program.built(tmp_path, *drive))
+    board = opened.power_on(image, "bench", "A", 1)
+    board.serial_rate = boards.BAUD
+    yield board, image.names.addresses, SerialClient(board, lambda: None, lambda _: None)
+    board.close()
+
+
+def test_it_is_the_control_program(drive, tmp_path):
+    """That all other commands are tested on, with a drive's table among its settings."""
+    assert code(loop_program.built(tmp_path, *drive)) == code(linked_file(tmp_path, "control"))
+
+
+def test_it_samples_and_controls_while_nobody_steps_it(powered, drive):
+    board, at, client = powered
+
+    def counted():
+        (count,), (low, high) = board.words(at["COUNT"], 1), board.words(at["SUM"], 2)
+        return count, high << 16 | low
+
+    client.pass_periods(300)
+    count, integral = counted()
+    assert count > 50
+    assert integral > 1 << 31, "the reference is zero, and the samples are not"
+    assert client.ask(Request.IDENTITY, b"") == drive[0]
+    with pytest.raises(RefusedError):
+        client.ask(Request.HIL_STEP, bytes(8))
+    assert counted()[1] < integral
+    client.ask(Request.HIL_ENTER, b"")
+    client.pass_periods(100)
+    assert counted()[0] > 150, "samples are taken all the same"
+    assert counted()[1] == board.inspect(CMPA) == 0, "and do nothing"
+    client.ask(Request.HIL_LEAVE, b"")
+    client.pass_periods(300)
+    assert counted()[1] > 1 << 31, "on its own again"
 
 
 def test_an_image_is_stepped_through_a_whole_run(stepped, requests, drive, tmp_path):

@@ -4,7 +4,7 @@ import json
 from dataclasses import replace
 
 import pytest
-from c28x_chip import PROGRAMS, linked_file
+from c28x_chip import changed_file, linked_file
 from in_process import stillspin
 
 from stillspin import core
@@ -70,17 +70,11 @@ def test_the_codes_decide(control, recorded):
 )
 def test_a_planted_error_is_found_where_it_is_written(tmp_path, recorded, planted):
     name, text, other, written = planted
-    for part in ("control.asm", "sampled.asm", "start.asm"):
-        (tmp_path / part).write_text((PROGRAMS / part).read_text())
-    changed = tmp_path / name
-    source = changed.read_text()
-    assert text in source
-    changed.write_text(source.replace(text, other))
-    file = linked_file(tmp_path, "control", [tmp_path / "control.asm"])
+    file = linked_file(tmp_path, "control", [changed_file(tmp_path, "control", name, text, other)])
     difference = compared(file, 1, recorded)
     line = opened.read(file).names.lines.at(difference.program - 1)
     assert line.file == name
-    assert written in changed.read_text().splitlines()[line.number - 1]
+    assert written in (tmp_path / name).read_text().splitlines()[line.number - 1]
     assert difference.expected[:2] == difference.found[:2], "the same step and register"
 
 

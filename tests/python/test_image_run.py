@@ -178,11 +178,12 @@ def cli_runs():
     return lambda *arguments: CliRunner().invoke(cli.app, list(arguments))
 
 
-def test_the_commands(cli_runs, tmp_path, control, monkeypatch):
+@pytest.mark.parametrize("command", [("run",), ("reproduce", "--no-commission")])
+def test_the_commands(cli_runs, tmp_path, control, monkeypatch, command):
     short = scenario_file.load("A10")
     run = replace(short.runs[0], duration=0.3, reached=(), commands=())
     monkeypatch.setattr(scenario_file, "load", lambda _: replace(short, runs=(run,), plots=()))
-    done = cli_runs("run", "A10", "--image", str(control), "--out", str(tmp_path / "r"))
+    done = cli_runs(*command, "A10", "--image", str(control), "--out", str(tmp_path / "r"))
     assert done.exit_code == ExitCode.SHORT
     assert "image" in done.stdout
     assert "native" in done.stdout
@@ -232,12 +233,12 @@ def test_a_whole_drive_s_interrupts_are_timed_from_its_start_on(monkeypatch):
     assert (seen[1][1] - seen[0][1]) / 1e8 == pytest.approx(0.106, abs=0.001)
 
 
-def test_hil_says_that_it_takes_an_image_of_the_drive(cli_runs, control, monkeypatch):
+def test_hil_says_that_it_takes_an_image_of_the_drive(cli_runs, tmp_path, monkeypatch):
     def silent(_):
         raise NoAnswerError("no answer")
 
     monkeypatch.setattr(built, "edition_at", silent)
-    done = cli_runs("hil", "A10", "--image", str(control))
+    done = cli_runs("hil", "A10", "--image", str(linked_file(tmp_path, "echo")))
     assert done.exit_code == ExitCode.NO_CONNECTION
     assert "no image of the drive" in done.stderr
     assert "stillspin run --image" in done.stderr

@@ -1,6 +1,6 @@
 ; Words as differences from those before (firmware/hil/delta.h), for a program that copies this file behind records.asm.
-LEFT    .set    0x8004
-MASK    .set    0x8005
+LEFT    .set    0x800C
+MASK    .set    0x800D
 
 ; AL words from XAR4 on are renewed from the request.
 taken:  MOV     @LEFT,AL
@@ -69,12 +69,12 @@ fold:   MOV     AH,@AL
         LSL     AL,#1
         XOR     AL,@AH
 more:   CMPB    AL,#0x7F
-        B       last,LOS
+        B       final,LOS
         MOV     AH,@AL
         ANDB    AH,#0x7F
         ORB     AH,#0x80
         MOV     *XAR5++,AH
         LSR     AL,#7
         B       more,UNC
-last:   MOV     *XAR5++,AL
+final:  MOV     *XAR5++,AL
         LRETR

@@ -1,56 +1,30 @@
-; The board's side of host in the loop (firmware/hil/hil.h), as small as it can be: it speaks the record protocol at the
-; rate of a board in the loop, and in each step executes one control step on the inputs that it was brought. What it
-; controls is no motor: the integral of the difference between the first two results of all windows is the duty of leg
-; a, its reverse that of leg b. It takes its host's word for the lengths in a step. Whoever assembles it says in
-; identity.asm what it calls itself, where its signals have their places and what they are called.
-        .copy   "start.asm"
-        .copy   "identity.asm"
-        .copy   "records.asm"
-        .copy   "deltas.asm"
-        .global EXPECT, INTEGRL
-EXPECT  .set    0x8006          ; the next step
-NUMBER  .set    0x8007          ; of the step that is answered
-MOST    .set    0x8008
-LEAST   .set    0x800A
-; From here on everything is zero when the loop is entered.
-ZEROS   .set    0x8010
-STEPPED .set    0x8010
-LINK    .set    0x8011
-SUMA    .set    0x8012
-SUMB    .set    0x8014
-INTEGRL .set    0x8016
-SHAPE   .set    0x8018          ; windows, words of a result, inputs, works
-TOLD    .set    0x801C          ; torn, outputs
-BEFORE  .set    0x801E          ; the same of the answer before
-OUTPUTS .set    0x8020
-EARLIER .set    0x8030          ; those of the answer before
+; The board's side of host in the loop (firmware/hil/hil.h), as small as it can be, for a program that copies this file
+; behind records.asm and deltas.asm: it speaks the record protocol, and in each step executes one control step on the
+; inputs that it was brought. The program's `law` takes the difference between the first two results of all windows to
+; the duty of leg a, its reverse is that of leg b; what it controls is no motor. It takes its host's word for the lengths
+; in a step.
+        .global EXPECT
+EXPECT  .set    0x800E          ; the next step
+NUMBER  .set    0x800F          ; of the step that is answered
+STEPPED .set    0x8016
+LINK    .set    0x8017
+SUMA    .set    0x8018
+SUMB    .set    0x801A
+SHAPE   .set    0x801C          ; windows, words of a result, inputs, works
+TOLD    .set    0x8020          ; torn, outputs
+BEFORE  .set    0x8022          ; the same of the answer before
+OUTPUTS .set    0x8024
+EARLIER .set    0x8032          ; those of the answer before
 SIGNALS .set    0x8040
 INPUTS  .set    0x80C0
 WORKS   .set    0x80E0
 WINDOWS .set    0x8100          ; a call and six results each
 END     .set    0x8200
+NAME    .set    20              ; octets
 TURN    .set    2500            ; ticks: a quarter of the period
 WORDS   .set    14              ; of the outputs of a step
 
-main:   LCR     serial
-        MOV     @SCICTL1,#3
-        MOV     @SCILOW,#31             ; 390625 bit/s
-        MOV     @SCICTL1,#0x23
-        CLRC    SXM
-        MOVW    DP,#BUFFER>>6
-        MOV     @BUFFER,#0
-        MOV     @EXPECT,#0
-        MOV     @LEAVES,#0
-        MOVL    XAR4,#TURN-100
-        MOVL    @MOST,XAR4
-        MOVL    ACC,@MOST
-        NEG     ACC
-        MOVL    @LEAST,ACC
-        LCR     clear
-        B       heard,UNC
-
-request:
-        MOVL    XAR2,#RECORD
+request: MOVL   XAR2,#RECORD
         MOVL    XAR5,#ANSWER
         MOV     AL,*XAR2++
         MOV     AH,@AL
@@ -117,22 +91,31 @@ looked: BANZ    seen,AR6--
         MOV     *XAR5++,#0              ; what is known
         B       send,UNC
 
-enter:  MOV     @EXPECT,#0
+enter:  MOV     @ALONE,#0
         LCR     clear
+        MOVL    XAR4,#TURN-100
+        MOVL    @MOST,XAR4
+        MOVL    ACC,@MOST
+        NEG     ACC
+        MOVL    @LEAST,ACC
         B       send,UNC
 
 leave:  MOV     @LEAVES,#1
         B       send,UNC
 
-clear:  MOVL    XAR4,#ZEROS
-        MOVL    XAR6,#END-ZEROS-1
+clear:  MOVL    XAR4,#REF
+        MOVL    XAR6,#END-REF-1
 zero:   MOV     *XAR4++,#0
         BANZ    zero,AR6--
         LRETR
 
 ; ---- a step
 
-step:   LCR     take16
+step:   MOV     AL,@ALONE
+        B       entered,EQ
+        MOVB    AL,#6                   ; not in this state
+        B       refuse,UNC
+entered: LCR    take16
         MOV     @NUMBER,AL
         SUB     AL,@EXPECT
         B       new,EQ
@@ -185,8 +168,9 @@ reply:  MOV     AL,@NUMBER
         MOVL    XAR7,#EARLIER
         MOV     AL,@TOLD+1
         LCR     given
+        MOVL    XAR4,#KNOWN
+        MOVZ    AR3,*XAR4
         MOVL    XAR4,#SIGNALS
-        MOVB    XAR3,#2*COUNT-1
         LCR     crc32
         LCR     put32
         B       send,UNC
@@ -207,8 +191,7 @@ even32: BANZ    bit32,AR6--
 
 ; ---- the control step, and what it tells the hardware: the frame of the next period
 
-control:
-        MOVB    ACC,#0
+control: MOVB   ACC,#0
         MOVL    @SUMA,ACC
         MOVL    @SUMB,ACC
         MOVL    XAR4,#WINDOWS
@@ -224,32 +207,8 @@ adds:   MOVU    ACC,*+XAR4[1]
 summed: BANZ    adds,AR3--
         MOVL    ACC,@SUMA
         SUBL    ACC,@SUMB
-        ADDL    @INTEGRL,ACC
-
-        MOVL    XAR4,#SIGNALS
-        MOVB    ACC,#1
-        MOVB    XAR0,#2*AT_STATE
-        MOVL    *+XAR4[AR0],ACC
-        MOVU    ACC,@SHAPE
-        MOVB    XAR0,#2*AT_WINDOWS
-        MOVL    *+XAR4[AR0],ACC
-        MOVU    ACC,@LINK
-        MOVB    XAR0,#2*AT_LINK
-        MOVL    *+XAR4[AR0],ACC
-        MOVL    ACC,@SUMA
-        MOVB    XAR0,#2*AT_A
-        MOVL    *+XAR4[AR0],ACC
-        MOVL    ACC,@SUMB
-        MOVB    XAR0,#2*AT_B
-        MOVL    *+XAR4[AR0],ACC
-        MOVL    ACC,@INTEGRL
-        MOVB    XAR0,#2*AT_INTEGRAL
-        MOVL    *+XAR4[AR0],ACC
-
         SETC    SXM
-        SFR     ACC,#8
-        MINL    ACC,@MOST
-        MAXL    ACC,@LEAST
+        LCR     law
         CLRC    SXM
         MOV     @T,AL
         MOV     @TOLD,#0
@@ -275,4 +234,20 @@ summed: BANZ    adds,AR3--
 bursts: MOV     *XAR4++,AH              ; none
         BANZ    bursts,AR3--
         MOV     *XAR4++,#4*TURN-1       ; deadline
+
+        MOVL    XAR7,#PLACES
+        MOVB    ACC,#1
+        LCR     tell
+        MOVU    ACC,@SHAPE
+        LCR     tell
+        MOVU    ACC,@LINK
+        LCR     tell
+        MOVL    ACC,@SUMA
+        LCR     tell
+        MOVL    ACC,@SUMB
+        LCR     tell
+        MOVL    ACC,@SUM
+tell:   MOVL    XAR4,#SIGNALS
+        MOVZ    AR0,*XAR7++
+        MOVL    *+XAR4[AR0],ACC
         LRETR

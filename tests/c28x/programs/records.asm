@@ -1,16 +1,16 @@
 ; Records (firmware/link/record.h) over the serial port, for a program that copies this file behind its own registers'
-; names: `heard` waits for a request and goes to `request` with its octets at RECORD and their number in LENGTH; `send`
-; sends the octets from ANSWER up to XAR5. An answer is shorter than 254 octets. DP is that of BUFFER, 0x8000 to 0x803F.
-BUFFER  .set    0x8000          ; octets of the record that is being received
-LEAVES  .set    0x8001          ; not zero: the answer is the last one, the watchdog's reset comes behind it
-LENGTH  .set    0x8002          ; of a record without its check sum
-VALUE   .set    0x8003
+; names: it goes to `heard` with an octet in AL, which goes on to `request` with a record's octets at RECORD and their
+; number in LENGTH when there is a whole one, and else back to `beside`; `send` sends the octets from ANSWER up to XAR5
+; and goes to `beside`. An answer is shorter than 254 octets. DP is that of BUFFER, 0x8000 to 0x803F.
+BUFFER  .set    0x8008          ; octets of the record that is being received
+LEAVES  .set    0x8009          ; not zero: the answer is the last one, the watchdog's reset comes behind it
+LENGTH  .set    0x800A          ; of a record without its check sum
+VALUE   .set    0x800B
 RAW     .set    0x8200          ; received, as it comes
 RECORD  .set    0x8300
 ANSWER  .set    0x8400
 
-heard:  LCR     octet
-        MOVL    XAR1,#RAW
+heard:  MOVL    XAR1,#RAW
         MOVZ    AR0,@BUFFER
         CMPB    AL,#0
         B       mark,EQ
@@ -19,12 +19,12 @@ heard:  LCR     octet
         ADDB    AL,#1
         ANDB    AL,#0xFF                ; what is longer is no record
         MOV     @BUFFER,AL
-        B       heard,UNC
+        B       beside,UNC
 
 mark:   MOVZ    AR3,@BUFFER
         MOV     @BUFFER,#0
         MOV     AL,@AR3
-        B       heard,EQ
+        B       beside,EQ
         MOVL    XAR4,#RAW
         MOVL    XAR5,#RECORD
 block:  MOV     AL,*XAR4++
@@ -42,7 +42,7 @@ copied: BANZ    copy,AR6--
         MOV     AL,@AR5                 ; the last zero was none of the record
         ADD     @AL,#0xFFFF-RECORD-2
         MOV     @LENGTH,AL
-        B       heard,LEQ
+        B       beside,LEQ
         ADDB    AL,#-1
         MOVZ    AR3,@AL
         MOVL    XAR4,#RECORD
@@ -51,7 +51,7 @@ copied: BANZ    copy,AR6--
         LSL     AH,#8
         OR      AH,*+XAR4[0]
         CMP     AL,@AH
-        B       heard,NEQ
+        B       beside,NEQ
         B       request,UNC
 
 send:   MOV     AL,@AR5
@@ -80,7 +80,7 @@ ended:  MOVL    ACC,@XAR4
         MOVB    AL,#0
         LCR     say
         MOV     AL,@LEAVES
-        B       heard,EQ
+        B       beside,EQ
         EALLOW
         MOVW    DP,#WDCR>>6
         MOV     @WDCR,#0x0028           ; the watchdog, which nobody serves
@@ -97,14 +97,6 @@ bit16:  LSL     AL,#1
         XOR     @AL,#0x1021
 even16: BANZ    bit16,AR6--
         BANZ    crcs,AR3--
-        LRETR
-
-octet:  MOVW    DP,#SCIRXST>>6
-none:   TBIT    @SCIRXST,#6
-        B       none,NTC
-        MOV     AL,@SCIRX
-        ANDB    AL,#0xFF
-        MOVW    DP,#BUFFER>>6
         LRETR
 
 say:    MOVW    DP,#SCITX>>6
