@@ -9,6 +9,9 @@ import sys
 from pathlib import Path
 
 import pytest
+import typer
+
+from stillspin import cli
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "toolchain"))
@@ -143,9 +146,26 @@ def test_every_promise_to_users_is_held_by_tests_that_there_are() -> None:
     rows = re.findall(r"^\| (\d+) \| (.+) \| (.+) \|$", text, re.MULTILINE)
     assert [int(number) for number, _, _ in rows] == list(range(1, 26))
     assert [promise for _, promise, held in rows if "](" not in held] == ["Plain English"]
+    assert all_tests_are_there(text)
+
+
+def all_tests_are_there(text: str) -> bool:
+    """Those that a page links by name; of one that is not, says which."""
     for name, file in re.findall(r"\[`(\w+)`\]\(\.\./(\S+)\)", text):
         there = (ROOT / file).read_text(encoding="utf-8")
         assert re.search(rf"^(def {name}\(|TEST(_F|_P)?\(\w+,\s+{name}\))", there, re.MULTILINE), (name, file)
+    return "`](../" in text
+
+
+def test_every_command_that_takes_an_image_has_its_test_on_the_control_program() -> None:
+    page = (ROOT / "docs/c28x.md").read_text(encoding="utf-8")
+    table = page.partition("### One control program")[2].partition("\n### ")[0]
+    named = {row for cell in re.findall(r"^\| (`.+?) \|", table, re.MULTILINE) for row in re.findall("`(.+?)`", cell)}
+    commands = typer.main.get_command(cli.app).commands  # type: ignore[attr-defined]
+    taking = {name for name, command in commands.items() if any("--image" in one.opts for one in command.params)}
+    there = {f"{name} --image" for name in taking} | {f"image {name}" for name in commands["image"].commands}
+    assert named - {"board --image --gdb"} == there
+    assert all_tests_are_there(table)
 
 
 def test_every_parameter_has_its_place_on_the_page() -> None:
