@@ -15,8 +15,8 @@ import pytest
 
 import fake_core
 from stillspin import core
-from stillspin.cases import profile
-from stillspin.errors import InputError
+from stillspin.cases import profile, questions
+from stillspin.errors import CampaignError, InputError
 from stillspin.runs import commission, records
 
 
@@ -287,3 +287,32 @@ def test_a_saliency_that_ends_is_found_and_kept_while_the_shaft_is_slow(tmp_path
         current, speed = np.abs(run.signals["i_q_ref"]), run.signals["true_speed"]
         assert current[(speed > 30.0) & (speed < 0.9 * even)].max() == pytest.approx(slow, abs=0.01)
         assert current[speed > 2.1 * even].max() == pytest.approx(12.0, abs=0.01)
+
+
+TOOL = {
+    "pole_pairs": 2, "resistance": 0.03, "inductance_d": 0.06, "inductance_q": 0.075, "emf": 1.92, "rated_current": 14,
+    "inertia": 1.5e-5, "voltage": 60, "current_range": 80, "speed": 20000,
+}  # fmt: skip
+
+
+def test_a_ripple_that_hides_the_polarity_test_is_not_blamed_on_the_voltage(tmp_path):
+    """2/3 of 60 V for 24 us over 60 uH."""
+    native = pytest.importorskip("stillspin._core", reason="the native module is not built")
+    file, schema, known = tmp_path / "tool.toml", core.plant_schema(native), core.parameters(native)
+    file.write_text(questions.file_text("tool", TOOL), encoding="utf-8")
+    chosen = profile.load("bench", schema, known, str(file))
+    with pytest.raises(CampaignError) as broken:
+        commission.run(native, chosen, profile.Changes(), 1, None)
+    words = str(broken.value)
+    assert "its voltage suffices, for 231 A in the polarity test's time" in words
+    assert "the ripple, 16 A in a pulse of 24 us, hides polarity_current, 6 A; a link of 22 V, or a choke" in words
+
+
+def test_a_voltage_that_is_too_low_is_blamed_as_ever(tmp_path):
+    native = pytest.importorskip("stillspin._core", reason="the native module is not built")
+    schema, known = core.plant_schema(native), core.parameters(native)
+    chosen = profile.load("bench", schema, known)
+    low = profile.changes(["link.source_voltage=14", "link_minimum=10"], schema, known)
+    with pytest.raises(CampaignError) as broken:
+        commission.run(native, chosen, low, 1, None)
+    assert str(broken.value).endswith("the DC link is too low to find rotor and polarity at the start")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from stillspin import core, toml_table, whole_file
+from stillspin.cases import similarity
 from stillspin.cases.profile import Changes, Profile, merged
 from stillspin.core import NativeCommissioning, NativeCore
 from stillspin.core_loop import NativeStepLoop
@@ -15,6 +16,8 @@ from stillspin.errors import CampaignError, InputError
 
 LIMIT = 180.0
 """Simulated seconds after which a commissioning is given up."""
+_STARVED = "too low to find rotor and polarity"
+_AMPLE = 4.0  # times the current of the test: that much voltage is not what it lacks
 
 
 @dataclass(frozen=True)
@@ -76,9 +79,28 @@ def run(
     """
     result = play(native, profile, changes, seed, progress)
     if not result.completed:
-        raise CampaignError(f"the commissioning broke off: {result.reason}")
+        raise CampaignError(f"the commissioning broke off: {result.reason}{_ripple(native, profile, changes, result)}")
     rows = tuple(Value(**{key: row[key] for key in Value.__annotations__}) for row in result.values)
     return Result(rows, float(result.stats["commissioning_seconds"]))
+
+
+def _ripple(native: NativeCore, profile: Profile, changes: Changes, result: NativeCommissioning) -> str:
+    """Where a test of the start has lost its current in the ripple, not for want of voltage, what there is to do."""
+    size = similarity.of(merged(profile.plant, changes.plant))
+    if size is None or _STARVED not in result.reason:
+        return ""
+    told = {**profile.parameters, **changes.parameters}
+    known = core.at_scale(core.parameters(native), told)
+    current, pulse = (float(told.get(name, known[name].default)) for name in ("polarity_current", "pulse_time"))
+    possible, ripple = size.current_that_follows(current), 2.0 / 3.0 * size.volts / size.inductance_d * pulse * 1e-6
+    if possible < _AMPLE * current or ripple <= current:
+        return ""
+    link, choke = size.volts * current / ripple, 1e3 * size.inductance_d * (ripple / current - 1.0)
+    return (
+        f"; its voltage suffices, for {possible:.3g} A in the polarity test's time: the ripple, {ripple:.3g} A in a "
+        f"pulse of {pulse:g} us, hides polarity_current, {current:.3g} A; a link of {link:.0f} V, "
+        f"or a choke of {choke:.2g} mH in each phase, which costs saliency, makes them equal"
+    )
 
 
 def play(
