@@ -16,9 +16,9 @@
 // line), to where the voltage leaves the pulses opposite windows and the ripple does not trip, and not beyond what a
 // level may last without an overload: with the machine cool, a quarter of what the overload's time constant bears. They
 // have i_d > 0, which pulls the rotor to where it is held, up to half of where the reluctance takes all of the magnet's
-// torque, lambda/(Lq - Ld), for i_q has to hold the shaft. Only where that leaves no room they have i_d < 0, which
-// pushes the rotor away, up to the field-weakening limit, for the magnets' sake. Resistance of winding and of devices
-// cannot be told apart this way: the devices' is kept as it was given.
+// torque, lambda/(Lq - Ld), for i_q has to hold the shaft. Only where that leaves less than a quarter for the line they
+// have i_d < 0 where that leaves more, which pushes the rotor away, up to the field-weakening limit, for the magnets'
+// sake. Resistance of winding and of devices cannot be told apart this way: the devices' is kept as it was given.
 
 #include "firmware/base/clear.h"
 #include "firmware/board/functions.h"
@@ -66,18 +66,20 @@ static void place(const drive_t* d) {
   staircase_t* const s = &commissioning.staircase;
   const config_values_t* const v = &d->config.values;
   const int32_t ripple = ripple_q20(d);
-  const int32_t room = q_clamp(v->trip_current - ripple / 8 * 9, v->current_limit / 4, v->current_limit);
+  const int32_t room =
+      q_clamp(v->trip_current - ripple - q_shr(ripple, 3), q_shr(v->current_limit, 2), v->current_limit);
   const int32_t limit = q_clamp(q_min(bearable_q20(), opposite_q20(d)), 0, room);
   commissioning.map.most_q20 = room;
   // A rotor without saliency follows: nothing holds it.
   int32_t most = commissioning.uniform ? limit : q_clamp(held_q20(), 0, limit);
   int32_t sign = 1;
-  if (ripple > most / 2) {
-    most = q_min(limit, v->weakening_limit);
+  const int32_t weakening = q_min(limit, v->weakening_limit);
+  if (weakening > most && ripple > q_shr(most * 5, 4)) {
+    most = weakening;
     sign = -1;
   }
-  if (ripple > most / 2) sign = 0;
-  const int32_t least = q_max(most / 10 * 4, q_min(ripple / 10 * 24, most / 8 * 7));
+  if (ripple > q_shr(most, 1)) sign = 0;
+  const int32_t least = q_max(most / 10 * 4, q_min(ripple / 10 * 24, most - q_shr(most, 3)));
   s->first_q20 = sign * least;
   s->step_q20 = sign * ((most - least) / (int32_t)(STAIRCASE_LEVELS - 1u));
 }

@@ -306,6 +306,20 @@ TEST_F(CommissioningStairs, TheReluctanceKeepsTheLevelsWhereTheShaftIsHeld) {
   EXPECT_NEAR(level(13), 0.0, 1e-9) << "no room on either side";
 }
 
+// A line over less than a quarter of the current says little of its slope: where the other side leaves more, the levels
+// are there.
+TEST_F(CommissioningStairs, AShortLineIsLeftForALongerOne) {
+  for (const auto& [share, most] : {std::pair{0.30, 1.0}, {0.32, -12.0}, {0.48, -12.0}}) {
+    const double pulling = ripple() / share;
+    turns_at(2.0 * pulling);
+    begin();
+    EXPECT_NEAR(level(13), most > 0.0 ? pulling : most, 0.01) << share;
+  }
+  inside::config().values.weakening_limit = raw(2.0 * ripple(), 20);
+  begin();
+  EXPECT_NEAR(level(13), ripple() / 0.48, 0.01) << "the other side has less";
+}
+
 // Beyond what the voltage of the resistance leaves of the shorter pulse a period has no two opposite windows.
 TEST_F(CommissioningStairs, TheLevelsEndWhereThePulsesAreNoLongerOpposite) {
   const double limit = 10.0;
