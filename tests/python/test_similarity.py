@@ -11,8 +11,7 @@ import pytest
 from test_scales import PLANT, larger
 
 from stillspin import core, resources
-from stillspin.cases import nameplate, profile, questions, similarity, sized_effects
-from stillspin.runs import startup
+from stillspin.cases import nameplate, profile, similarity, sized_effects
 from stillspin.scales import SCALES
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -352,52 +351,3 @@ def test_a_sharp_angle_on_a_heavy_rotor_is_told_as_a_noisier_one(changes, factor
 def test_the_watch_over_synchronism_bears_what_the_sensors_noise_looks_like(native):
     assert times(native, "synchronism_floor", inductance_q=8 * 7.8e-3) == 8.0
     assert times(native, "synchronism_floor", inductance_q=7.8e-3 / 2) == 1.0
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_what_no_nameplate_says_follows_a_rule_that_is_the_catalogues(native, name):
-    file = resources.find("motors", name)
-    machine = tomllib.loads(file.read_text(encoding="utf-8"))["machine"]
-    if "flux_map" in machine:
-        return
-    plant = profile.load("ideal", core.plant_schema(native), core.parameters(native), name).plant
-    crossed = machine["cross_inductance"]
-    bare = {key: value for key, value in machine.items() if key != "cross_inductance"}
-    found = similarity.assumed({**plant, "machine": bare})
-    assert found == {"machine": {"cross_inductance": pytest.approx(crossed, rel=5e-3, abs=1e-12)}}
-
-
-NAMEPLATE = {
-    "pole_pairs": 3, "resistance": 0.45, "inductance_d": 5.5, "inductance_q": 9.8, "emf": 61.5, "rated_current": 10.6,
-    "inertia": 6e-4, "voltage": 400, "current_range": 40, "speed": 4000,
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("angle", [0.0, 100.0, 230.0])
-def test_a_motor_of_a_nameplate_starts_against_a_brake_once_it_is_known(native, tmp_path, angle):
-    """Its file states nothing of the cross-saturation, which alone tells the polarity there."""
-    path = tmp_path / "mine.toml"
-    path.write_text(questions.file_text("mine", NAMEPLATE), encoding="utf-8")
-    schema = core.plant_schema(native)
-    chosen = profile.load("bench", schema, core.parameters(native), str(path))
-    assert "machine.cross_inductance is not stated; by rule it is 0.000206 H" in chosen.not_stated
-    held = {"mechanics": {"brake_until_run": True}, "initial": {"angle": math.radians(angle)}}
-
-    def faults(extra):
-        plant = profile.merged(chosen.plant, held, extra)
-        return native.run(
-            plant=plant,
-            parameters={**chosen.parameters, **startup.saturation_map(plant, schema)},
-            commands=[(0.0, "speed_ref_rpm", 200.0)],
-            load=[],
-            duration=0.2,
-            max_start=5.0,
-            record_every=10,
-            waveform=(0.0, 0.0, 1),
-            seed=1,
-            progress=None,
-        ).faults
-
-    assert not faults({})
-    ((_, words),) = faults({"machine": {"cross_inductance": 0.0}})
-    assert words.startswith("polarity of the magnet ambiguous")
