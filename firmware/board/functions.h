@@ -54,6 +54,7 @@ typedef struct {
   uint16_t stalled_ms;      // the shaft has not got on for so long
   uint32_t stall_from_bam;  // from here
   int32_t stall_back_bpp;   // and turned so fast against the reference
+  bool stall_slows;         // which gets less
 } board_t;
 
 extern board_t board;

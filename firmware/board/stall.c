@@ -4,8 +4,9 @@
 // some rpm. In stall_time it has to get half as far as the reference does, or a quarter of an electrical turn: a shaft
 // that is run up at the limit of the current is long past that. At a reference of zero a load is held on purpose,
 // however much of it. Start and commissioning know their own moves and their own times. A shaft that still turns the
-// other way and slows down, as a heavy one does in a reversal, is getting on, too. A moment below the limit of the
-// current takes back four: on a blocked shaft the noise of the speed makes such moments.
+// other way and slows down, as a heavy one does in a reversal, is getting on, too, as long as it gets slower than it
+// has been: a load that drives it back does so with a ripple. A moment below the limit of the current takes back four:
+// on a blocked shaft the noise of the speed makes such moments.
 
 #include "firmware/board/functions.h"
 #include "firmware/dictionary/parameters.h"
@@ -24,20 +25,21 @@ static int32_t back_bpp(const drive_t* d) {
   return q_max((d->control.ramp.value > 0) ? qc_sub_sat(0, speed_bpp) : speed_bpp, 0);
 }
 
-static void begin_anew(const drive_t* d) {
+static void begin_anew(const drive_t* d, bool slows) {
   board.stalled_ms = 0;
   board.stall_from_bam = d->position.selected.angle_bam;
   board.stall_back_bpp = back_bpp(d);
+  board.stall_slows = slows;
 }
 
 static bool has_speed_reference(const drive_t* d) {
   return d->state == DRIVE_RUN && d->control.ramp.value != 0 && qc_abs_sat(d->position.selected.speed_bpp) < FAST_BPP;
 }
 
-// By a sixteenth of its largest speed since it began at least.
+// By a sixteenth at least: of its largest speed since it began, and once it slows down, of its speed at the last time.
 static bool is_slowing(const drive_t* d) {
   const int32_t now_bpp = back_bpp(d);
-  board.stall_back_bpp = q_max(board.stall_back_bpp, now_bpp);
+  if (!board.stall_slows) board.stall_back_bpp = q_max(board.stall_back_bpp, now_bpp);
   return board.stall_back_bpp - now_bpp > board.stall_back_bpp / 16 + SLOWER_BPP;
 }
 
@@ -57,7 +59,11 @@ static int32_t way_bam(const drive_t* d) {
 
 drive_fault_t board_follow_shaft(void) {
   const drive_t* const d = &drive;
-  if (!has_speed_reference(d) || way_bam(d) > least_way_bam(d) || is_slowing(d)) begin_anew(d);
+  if (!has_speed_reference(d) || way_bam(d) > least_way_bam(d)) {
+    begin_anew(d, false);
+  } else if (is_slowing(d)) {
+    begin_anew(d, true);
+  }
   if ((d->limits & LIMIT_CURRENT) == 0) {
     board.stalled_ms -= (board.stalled_ms < RELIEF_MS) ? board.stalled_ms : RELIEF_MS;
     return FAULT_NONE;

@@ -1,6 +1,9 @@
 // When a shaft counts as stalled: a reference, all the torque there is, and no way made. Each condition alone, and the
 // times.
 
+#include <algorithm>
+#include <cmath>
+
 #include "firmware/board/functions.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/states.h"
@@ -150,6 +153,21 @@ TEST_F(Stall, AReversalIsNone) {
       ASSERT_EQ(inside::fault(), FAULT_NONE) << rpm;
     }
   }
+}
+
+// What a shaft that is driven back slows down by in its ripple is no way made: a tenth of its speed, ten times a turn.
+TEST_F(Stall, AShaftThatIsDrivenBackUnevenlyIsAFault) {
+  double turns = 0.0;
+  int n = 0;
+  for (; n < 5000 && inside::state() == DRIVE_RUN; ++n) {
+    const double rpm = std::min(100.0, n / 3.0) * (1.0 + 0.1 * std::sin(10.0 * 6.2831853 * turns));
+    turns -= rpm / 60.0 * 1e-3;
+    inside::selected().angle_bam = static_cast<std::uint32_t>(static_cast<std::int64_t>(turns * 4.0 * 4294967296.0));
+    inside::selected().speed_bpp = -bpp_of(int(rpm));
+    look();
+  }
+  EXPECT_EQ(inside::fault(), FAULT_STALL);
+  EXPECT_LT(n, 4 * 500);
 }
 
 }  // namespace
