@@ -61,15 +61,15 @@ static int32_t load_current(const drive_t* d) {
 }
 
 // A rotor that is found by its saliency is lost with it: the current stays below saliency_current until the EMF tells
-// as much. Per radian a window's slope changes by y 2 s 2/3 U for a saliency s = (Lq - Ld)/(Lq + Ld) at a link U, and
-// by y E for an EMF E. At saliency_current there is at least an eighth of s left, and both weigh the same where E is
-// U s / 6. From that speed to twice of it the limit rises evenly, so that no step of it makes the current chatter.
+// as much, and is all there when the EMF outweighs what the saliency may have become (config/config.c). In between the
+// limit rises evenly, so that no step of it makes the current chatter.
 static int32_t usable_current(const drive_t* d) {
   const int32_t limit_q20 = d->control.current_limit_q20;
   const int32_t salient_q20 = d->config.salient_q20;
   if (salient_q20 >= limit_q20) return limit_q20;
   const int32_t even_bpp = q_clamp(qc_mul_sat(d->samples.link_q16, d->config.salient_bpp_q4, 20), 1, FASTEST_EVEN_BPP);
-  const int32_t told_q30 = rise_q30(qc_abs_sat(d->position.selected.speed_bpp), even_bpp, 2 * even_bpp);
+  const int32_t freed_bpp = q_max(qc_mul_sat(d->samples.link_q16, d->config.freed_bpp_q4, 20), 2 * even_bpp);
+  const int32_t told_q30 = rise_q30(qc_abs_sat(d->position.selected.speed_bpp), even_bpp, freed_bpp);
   return q_mix(salient_q20, limit_q20, told_q30, 30);
 }
 

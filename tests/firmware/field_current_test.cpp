@@ -1,6 +1,7 @@
 // The d-axis current of the speed task, field weakening and its other reasons, and what the torque has beside it.
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/firmware/speed_control.hpp"
 
@@ -169,6 +170,36 @@ TEST_F(SpeedTask, ARotorThatIsFoundByItsSaliencyKeepsIt) {
   for (int n = 0; n < 5; ++n) part(TASK_SPEED);
   EXPECT_NEAR(iq(), 6.0, 1e-4);
   EXPECT_NE(inside::limits() & LIMIT_CURRENT, 0);
+}
+
+// Where the map ends with the saliency, and a fall of Lqq that goes on turns its sign at the limit, the current is all
+// there at twice the EMF that balances both: (4/3 link)^2 s s'.
+TEST_F(SpeedTask, ASaliencyThatTurnsItsSignIsOutweighedFirst) {
+  const double l_d = real(parameters.inductance_d, 20), l_q = real(parameters.inductance_q, 20);
+  const double flux = real(parameters.magnet_flux, 28);
+  const double even = kLink / 6.0 * (l_q - l_d) / (l_q + l_d) / flux;  // rad/s
+  for (const double last : {0.9, 0.8, 0.7}) {
+    const std::int32_t fall = raw(100.0 * (1.0 - last) / 4.0, 16), whole = raw(100.0, 16);
+    parameters.lqq_1 = whole - fall;
+    parameters.lqq_2 = whole - 2 * fall;
+    parameters.lqq_3 = whole - 3 * fall;
+    parameters.lqq_4 = whole - 4 * fall;
+    parameters.map_current = parameters.saliency_current = raw(6.0, 20);
+    parameters.current_limit = raw(12.0, 20);
+    ASSERT_TRUE(drive_config_load(&inside::config()));
+    inside::current_limit_q20() = raw(12.0, 20);
+    const double beyond = l_q / (1.0 + (1.0 / last - 1.0) * 4.0);
+    const double s = (last * l_q - l_d) / (last * l_q + l_d), turned = std::max(0.0, (l_d - beyond) / (l_d + beyond));
+    const double freed = std::max(2.0 * even, 8.0 / 3.0 * kLink * std::sqrt(s * turned) / flux);
+    EXPECT_EQ(freed > 2.0 * even, last < 0.9) << "else this shows nothing";
+    for (const auto& [at, room] : {std::pair{0.99 * even, 6.0},
+                                   {-(0.75 * even + 0.25 * freed), 7.5},
+                                   {0.5 * even + 0.5 * freed, 9.0},
+                                   {1.01 * freed, 12.0}}) {
+      speed(at);
+      EXPECT_NEAR(real(drive_current_headroom(&drive), 20), room, 0.02) << last << " at " << at;
+    }
+  }
 }
 
 // A measured angle needs no saliency.

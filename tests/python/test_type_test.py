@@ -24,7 +24,10 @@ native = pytest.importorskip("stillspin._core", reason="the native module is not
 FIRMWARE = functools.cache(own.firmware)
 
 
-DEFAULT = {"voltage_use": 100.0, "start_method": 0.0, "if_speed": 0.0, "saliency_current": 0.0}
+DEFAULT = {
+    "voltage_use": 100.0, "start_method": 0.0, "if_speed": 0.0, "saliency_current": 0.0, "current_limit": 15.0,
+    "inductance_d": 4.0, "inductance_q": 5.0, "map_current": 15.0, "ldd_4": 100.0, "lqq_4": 100.0,
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -136,10 +139,17 @@ def test_where_the_saliency_ends_the_load_is_what_the_drive_gives_there():
     # The speed at which the EMF is a sixth of what the saliency, a ninth, leaves of the link.
     even = 100.0 * math.sqrt(3.0) / 9.0 / 6.0 / 0.1 / 2.0 * 30.0 / math.pi
     assert rated.even == pytest.approx(even)
-    assert [rated.load_at(share * even) for share in (0.0, -2.4, 2.6)] == pytest.approx([1.2, 1.2, rated.torque])
+    assert rated.freed == pytest.approx(2.0 * even)
+    # Four fifths of what is given at four fifths of the speed: 5 A, 5 A, 7 A, all
+    loads = [rated.load_at(share * even) for share in (0.0, -1.25, 1.5, 2.6)]
+    assert loads == pytest.approx([1.2, 1.2, 1.68, rated.torque])
     assert told(ROUND).load_at(0.0) == rated.torque
     (slow,) = [duty for duty in duties.duties(rated) if (duty.kind, duty.of) == (LOAD, "0 %")]
     assert (slow.load, slow.run.load[1][1]) == pytest.approx((0.4, 1.2))
+    # A map that ends at 4.5 mH: by 13.5 A they are 2.5 mH, and the saliencies balance at 7.6 times the speed.
+    ended = told(ROUND, saliency_current=5.0, map_current=5.0, lqq_4=90.0, current_limit=15.0)
+    turned = (4.0 - 2.5) / (4.0 + 2.5)
+    assert ended.freed == pytest.approx(16.0 * 9.0 * even * math.sqrt(0.5 / 8.5 * turned))
 
 
 @pytest.mark.parametrize(("motor", "of"), [("vehicle_35kw", "-5 %"), ("vehicle_35kw", "+5 %"), ("servo_48v", "-100 %")])

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from stillspin.cases.motor_told import Described
 from stillspin.cases.open_loop import rpm, share
 
-_LOADED = 0.8  # of what the drive gives: the rest is for keeping the speed
-_RISEN = 2.5  # times `even`
+_LOADED = 0.8  # of what the drive gives, and of the speed: the rest is for keeping it
 _SPARE = 0.9  # of the speed up to which the link's voltage lasts: it sags under load, and valves drop some of it
 
 
@@ -28,8 +27,11 @@ class Ratings:
         cogging: N m, peak.
         saturates: which alone tells the polarity of a shaft that a brake holds.
         slow_torque: of the current up to which the saliency is there; the drive gives no more below `even` rpm, and
-            from there to twice of it the limit rises to all (firmware/drive/speed.c).
+            from there to `freed` the limit rises to all (firmware/drive/speed.c).
+        most_torque: of all the current that the drive gives.
         even: rpm at which the EMF tells as much as what is left of the saliency.
+        freed: rpm, twice of that, or of what balances the saliency at the limit of the current
+            (firmware/config/config.c); 0 where all the current is there at rest.
     """
 
     torque: float
@@ -42,15 +44,20 @@ class Ratings:
     cogging: float
     saturates: bool
     slow_torque: float
+    most_torque: float
     even: float
+    freed: float
 
     def load_at(self, speed: float) -> float:
         """The torque that a shaft at a speed (rpm) is loaded with: the rated one, or most of what the drive gives.
 
-        Where the limit rises a load that slows the shaft lowers it, so that is no speed to be loaded at.
+        Where the limit rises a load that slows the shaft lowers it: what is given at four fifths of the speed counts.
         """
-        slow = abs(speed) < _RISEN * self.even
-        return min(self.torque, _LOADED * self.slow_torque) if slow else self.torque
+        kept = _LOADED * abs(speed)
+        if kept >= self.freed:
+            return self.torque
+        told = max(kept - self.even, 0.0) / (self.freed - self.even)
+        return min(self.torque, _LOADED * (self.slow_torque + told * (self.most_torque - self.slow_torque)))
 
 
 def of(motor: Described, *, mapped: bool = False) -> Ratings:
@@ -63,8 +70,9 @@ def of(motor: Described, *, mapped: bool = False) -> Ratings:
     speed = min(limit, _SPARE * rpm(_loaded(volts, flux, resistance * current, inductance_q * current)) / pairs)
     weakened = flux - motor.plant("machine", "inductance_d") * motor.told("weakening_limit")
     open_loop = motor.told("start_method") == 1.0
-    salient = motor.told("saliency_current") or math.inf
-    per_volt = share(motor.plant("machine", "inductance_d"), inductance_q) / 6.0 / flux / pairs
+    salient, most = motor.told("saliency_current"), motor.told("current_limit")
+    even = share(motor.plant("machine", "inductance_d"), inductance_q) / 6.0
+    per_share = rpm(motor.plant("link", "source_voltage") / flux / pairs)
     return Ratings(
         torque=torque,
         speed=speed,
@@ -75,9 +83,24 @@ def of(motor: Described, *, mapped: bool = False) -> Ratings:
         slowest=motor.told("if_speed") if open_loop else 0.0,
         cogging=motor.plant("mechanics", "cogging_torque"),
         saturates=mapped or bool(motor.plant("machine", "saturation")),
-        slow_torque=1.5 * pairs * flux * salient,
-        even=rpm(motor.plant("link", "source_voltage") * per_volt),
+        slow_torque=1.5 * pairs * flux * (salient or most),
+        most_torque=1.5 * pairs * flux * most,
+        even=even * per_share,
+        freed=max(2.0 * even, 8.0 / 3.0 * _wrong(motor)) * per_share if 0.0 < salient < most else 0.0,
     )
+
+
+def _wrong(motor: Described) -> float:
+    """Geometric mean of the saliency where the map ends and of that of the other sign at the limit, by the drive's law.
+
+    1/Lqq rises with the square of the current.
+    """
+    d, q = (motor.told(f"inductance_{axis}") * motor.told(f"l{axis}{axis}_4") / 100.0 for axis in "dq")
+    reach = motor.told("current_limit") / motor.told("map_current")
+    beyond = 1.0 / motor.told("inductance_q")
+    beyond += (1.0 / q - beyond) * reach**2
+    turned = share(1.0 / beyond, d)
+    return math.sqrt(share(d, q) * turned) if turned > 0.0 else 0.0
 
 
 def _loaded(volts: float, flux: float, drop: float, flux_q: float) -> float:
