@@ -43,6 +43,7 @@ typedef struct {
   int32_t tick;
   int32_t first_q20, step_q20;  // the first level, and by how much each is above the one before
   dead_time_config_t one_volt;  // the devices, if their drop were that
+  bool at_zero;                 // no pulses but those of the voltage: the windows are the zero vector's
 } staircase_t;
 
 /// Periods of one sign of the torque in one kind of train (group: 2 * mirrored train + negative sign).

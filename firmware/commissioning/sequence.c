@@ -140,6 +140,12 @@ static void settle_longer(modulator_config_t* m) {
   c->settle_ticks = (int16_t)q_min(c->settle_ticks + LONGER_TICKS, q_max(c->settle_ticks, most));
 }
 
+// With no alternating layout and no window to extend a vector for, there are the voltage's own edges only.
+void commissioning_release_pulses(void) {
+  drive.config.modulator.pulse_ticks = 0;
+  drive.config.modulator.extended.window_max_ticks = 0;
+}
+
 // In one, behind what was changed before: it begins with the next interrupt, or not at all.
 void drive_command_commission(void) {
   drive_exchange();

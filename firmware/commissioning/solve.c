@@ -21,14 +21,15 @@ typedef struct {
 
 static int32_t for_fit(int32_t x) { return q_limit(x, FIT_END); }
 
-static int32_t mean_of(int64_t sum, int32_t count) { return for_fit(fit_ratio(sum, count, 0)); }
+// Two words of arguments less at each place than the quotient with its shift.
+static int32_t over(int64_t sum, int32_t count) { return fit_ratio(sum, count, 0); }
+
+static int32_t mean_of(int64_t sum, int32_t count) { return for_fit(over(sum, count)); }
 
 // The link falls under the vector along the current and rises under its opposite. Where its own time constant is about
 // a pulse, the mean misses this, and the windows, which are behind the pulses' beginnings, twice as much; where it is
 // much longer there is little of it.
-static int32_t sag_q20(const staircase_level_t* l) {
-  return for_fit(q_div(fit_ratio(l->sag, l->periods, 0), l->link_q16, 24));
-}
+static int32_t sag_q20(const staircase_level_t* l) { return for_fit(q_div(over(l->sag, l->periods), l->link_q16, 24)); }
 
 // A shaft that stays where it was taken to has no phase near zero, and a volt of drop is 4/3 V along d at every level:
 // stayed.
@@ -49,7 +50,7 @@ static bool command_columns(const staircase_t* s, columns_t* c) {
 static void edge_column(const staircase_t* s, const machine_model_t* m, columns_t* c) {
   for (uint16_t k = 0; k < STAIRCASE_LEVELS; k++) {
     const staircase_level_t* const l = &s->level[k];
-    const int32_t missing_q20 = qc_sub_sat(2 * sag_q20(l), q_div(fit_ratio(l->residual, l->windows, 0), m->yd_q30, 30));
+    const int32_t missing_q20 = qc_sub_sat(2 * sag_q20(l), q_div(over(l->residual, l->windows), m->yd_q30, 30));
     const int32_t seen_q20 = qc_add_sat(missing_q20, qc_mul_sat(m->rs_q24, c->current[k], 24));
     c->voltage[k] = for_fit(qc_sub_sat(c->voltage[k], seen_q20));
   }
@@ -64,9 +65,15 @@ staircase_values_t staircase_solve(const staircase_t* s, const machine_model_t* 
   v.resistance_q24 = plane.slope_q24;
   v.command_rms_q16 = c.stayed ? plane.rms / 16 : INT32_MAX;
   edge_column(s, m, &c);
+  // Under the zero vector the resistance is the windows'. What the command differs by in it is none of the edges'.
+  const int32_t both_q16 = plane.offset_q24 / 256;
+  if (s->at_zero && fit_plane(c.current, c.factor, c.voltage, STAIRCASE_LEVELS, &plane)) {
+    v.resistance_q24 = qc_sub_sat(v.resistance_q24, plane.slope_q24);
+    for (uint16_t k = 0; k < STAIRCASE_LEVELS; k++) c.voltage[k] -= qc_mul_sat(plane.slope_q24, c.current[k], 24);
+  }
   const int64_t square = fit_dot(c.factor, c.factor, STAIRCASE_LEVELS);
   v.edge_error_q16 = fit_ratio(fit_dot(c.factor, c.voltage, STAIRCASE_LEVELS), square, 16);
-  v.drop_error_q16 = qc_sub_sat(plane.offset_q24 / 256, v.edge_error_q16);
+  v.drop_error_q16 = qc_sub_sat(both_q16, v.edge_error_q16);
   int64_t rest = 0;
   for (uint16_t k = 0; k < STAIRCASE_LEVELS; k++) {
     const int32_t left = for_fit(qc_sub_sat(c.voltage[k] / 16, qc_mul_sat(v.edge_error_q16, c.factor[k], 20)));
@@ -154,10 +161,10 @@ map_values_t map_solve(const map_group_t group[MAP_GROUPS], const machine_model_
     tensor_axes_t a;
     if (!tensor_solve(&group[k].tensor, m, &a) || a.half_q30 >= a.mean_q30) return v;
     axis[k] = a.axis_bam;
-    position[k] = fit_ratio(group[k].position, group[k].tensor.count, 0);
+    position[k] = over(group[k].position, group[k].tensor.count);
     mean += a.mean_q30 / (int32_t)MAP_GROUPS;
     half += a.half_q30 / (int32_t)MAP_GROUPS;
-    v.current_q20 += qc_abs_sat(fit_ratio(group[k].current, group[k].tensor.count, 0)) / (int32_t)MAP_GROUPS;
+    v.current_q20 += qc_abs_sat(over(group[k].current, group[k].tensor.count)) / (int32_t)MAP_GROUPS;
   }
   // Groups 0 and 2 have i_q > 0, 1 and 3 i_q < 0; 2 and 3 are those of the mirrored train.
   const int32_t moved = (axis[0] - axis[2]) / 2 + (axis[1] - axis[3]) / 2;
@@ -175,11 +182,10 @@ typedef struct {
 
 // The voltage without that of the d-axis current.
 static steady_t steady(const spin_sums_t* s, int32_t ld_q30) {
-  const int32_t flux_q28 = qc_mul_sat(ld_q30, fit_ratio(s->current_d, s->periods, 0), 22);
-  const int32_t speed = fit_ratio(s->speed, s->periods, 0);
+  const int32_t flux_q28 = qc_mul_sat(ld_q30, over(s->current_d, s->periods), 22);
+  const int32_t speed = over(s->speed, s->periods);
   const int32_t armature_q16 = fit_ratio((int64_t)flux_q28 * speed, BPP_PER_RAD_Q12, 0);
-  const steady_t m = {speed, qc_sub_sat(fit_ratio(s->voltage_q, s->periods, 0), armature_q16),
-                      fit_ratio(s->current_q, s->periods, 0)};
+  const steady_t m = {speed, qc_sub_sat(over(s->voltage_q, s->periods), armature_q16), over(s->current_q, s->periods)};
   return m;
 }
 
@@ -187,15 +193,15 @@ static int32_t emf_q16(const steady_t* s, int32_t resistance_q24) {
   return qc_sub_sat(s->voltage_q16, qc_mul_sat(resistance_q24, s->current_q20, 28));
 }
 
-static int32_t flux_q28(int32_t emf_q16, int32_t speed) { return fit_ratio(emf_q16 * BPP_PER_RAD_Q12, speed, 0); }
+static int32_t flux_q28(int32_t emf_q16, int32_t speed) { return over(emf_q16 * BPP_PER_RAD_Q12, speed); }
 
 // Inertia from a ramp between two steady speeds, friction taken off as it is at those speeds.
 static int32_t inertia_q24(const spin_sums_t* r, const steady_t* low, const steady_t* high, int32_t change,
                            int32_t torque_constant_q24, int32_t pole_pairs) {
-  const int32_t mean_speed = fit_ratio(r->speed, r->periods, 0);
+  const int32_t mean_speed = over(r->speed, r->periods);
   const int32_t place_q24 = fit_ratio((int64_t)mean_speed - low->speed, (int64_t)high->speed - low->speed, 24);
   const int32_t friction_q20 = map_along(low->current_q20, high->current_q20, place_q24);
-  const int32_t net_q20 = qc_sub_sat(fit_ratio(r->current_q, r->periods, 0), friction_q20);
+  const int32_t net_q20 = qc_sub_sat(over(r->current_q, r->periods), friction_q20);
   const int32_t torque_q24 = qc_mul_sat(torque_constant_q24, net_q20, 20);
   const int32_t impulse_q10 = qc_mul_sat(torque_q24, r->periods, 14);  // N m periods
   return fit_ratio(impulse_q10 * BPP_PER_ACCEL_Q16 * pole_pairs, change, -2);
@@ -217,7 +223,7 @@ spin_values_t spin_solve(const spin_t* s, int32_t resistance_q24, int32_t ld_q30
   v.flux_low_q28 = flux_q28(low_emf_q16, low.speed);
   const int32_t torque_constant_q24 = qc_mul_sat(v.flux_q28 / 16, 3 * pole_pairs, 1);
   const int32_t torque_q20 = qc_mul_sat(torque_constant_q24, current_q20, 24);
-  v.friction_q24 = fit_ratio(torque_q20 * BPP_PER_RAD_Q4 * pole_pairs, change, 0);
+  v.friction_q24 = over(torque_q20 * BPP_PER_RAD_Q4 * pole_pairs, change);
   v.inertia_up_q24 = inertia_q24(&s->ramp[0], &low, &high, change, torque_constant_q24, pole_pairs);
   v.inertia_down_q24 =
       inertia_q24(&s->ramp[1], &end, &high, qc_sub_sat(end.speed, high.speed), torque_constant_q24, pole_pairs);

@@ -19,11 +19,20 @@
 // torque, lambda/(Lq - Ld), for i_q has to hold the shaft. Only where that leaves less than a quarter for the line they
 // have i_d < 0 where that leaves more, which pushes the rotor away, up to the field-weakening limit, for the magnets'
 // sake. Resistance of winding and of devices cannot be told apart this way: the devices' is kept as it was given.
+//
+// Twice the ripple is 4/3 U/L for the length of a pulse, the voltage's end U/4 R for the same length: where L/R is
+// below 16/3 periods there is no room between them, however long a pulse is. A rotor that follows the current needs
+// none to be seen. There the pulses are those of R i alone, which change no current's sign, and the zero vector behind
+// them lasts for most of the period. Its window sees R i decay, with no part of the link's and no edge:
+//   -residual / Yd = (R - R model) i + (drop error) F      with the window's own current
+// That gives R and drop. What the command has beyond it at all levels alike is the edges'; its slope is not R's, for
+// the period's end, where the current is controlled, is where the ripple is lowest.
 
 #include "firmware/base/clear.h"
 #include "firmware/board/functions.h"
 #include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/mode/commands.h"
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "hal/qmath/qcall.h"
@@ -60,12 +69,12 @@ static int32_t opposite_q20(const drive_t* d) {
   return q_div(volts_q16, commissioning.model.rs_q24, 28);
 }
 
-// With no room on either side there are no levels, and nothing will be found. The pulses take the current from its mean
-// to either side, saturated by somewhat more: to the trip at most, in the map as well.
+// With no room on either side there are no levels but those under the zero vector. The pulses take the current from its
+// mean to either side, saturated by somewhat more: to the trip at most, in the map as well.
 static void place(const drive_t* d) {
   staircase_t* const s = &commissioning.staircase;
   const config_values_t* const v = &d->config.values;
-  const int32_t ripple = ripple_q20(d);
+  int32_t ripple = ripple_q20(d);
   const int32_t room =
       q_clamp(v->trip_current - ripple - q_shr(ripple, 3), q_shr(v->current_limit, 2), v->current_limit);
   const int32_t limit = q_clamp(q_min(bearable_q20(), opposite_q20(d)), 0, room);
@@ -78,7 +87,14 @@ static void place(const drive_t* d) {
     most = weakening;
     sign = -1;
   }
-  if (ripple > q_shr(most, 1)) sign = 0;
+  const bool hidden = ripple > q_shr(most, 1);
+  s->at_zero = hidden && commissioning.uniform;
+  if (s->at_zero) {
+    commissioning_release_pulses();
+    ripple = 0;
+  } else if (hidden) {
+    sign = 0;
+  }
   const int32_t least = q_max(most / 10 * 4, q_min(ripple / 10 * 24, most - q_shr(most, 3)));
   s->first_q20 = sign * least;
   s->step_q20 = sign * ((most - least) / (int32_t)(STAIRCASE_LEVELS - 1u));
@@ -89,8 +105,7 @@ static int32_t factor_q20(ab_t current_q20, rotation_t r) {
   return frame_park(dead_time_drop_q16(&commissioning.staircase.one_volt, current_q20), r).d * 16;
 }
 
-static void add_period(const drive_t* d, staircase_level_t* l, rotation_t r) {
-  const dq_t i = d->control.measured_q20;
+static void add_period(const drive_t* d, staircase_level_t* l, rotation_t r, dq_t i) {
   q_gather(&l->current, i.d);
   q_gather(&l->command, (int64_t)d->control.command_q16.d * 16);
   q_gather(&l->factor, factor_q20(frame_inverse_park(i, r), r));
@@ -124,13 +139,16 @@ static void add_window(const drive_t* d, staircase_level_t* l, uint16_t k) {
 static void add_one(const drive_t* d, staircase_t* s) {
   staircase_level_t* const l = &s->level[s->index];
   s->turn = (s->turn + 1u < TURNS * TURN_PERIODS) ? (uint16_t)(s->turn + 1u) : 0u;
-  if (!commissioning_has_pair(d)) return;
+  if (s->at_zero ? d->samples.count == 0u : !commissioning_has_pair(d)) return;
+  const uint16_t last = d->samples.count / 2u;  // of one or two: the zero vector's
   if (s->turn < TURN_PERIODS) {
     const rotation_t r = frame_rotation(d->position.selected.angle_bam);
-    add_period(d, l, r);
-    add_sag(d, l, r);
+    dq_t i = d->control.measured_q20;
+    if (s->at_zero) i.d = d->position.frames[last].current_q18.d * 4;
+    add_period(d, l, r, i);
+    if (!s->at_zero) add_sag(d, l, r);
   } else {
-    add_window(d, l, (uint16_t)(s->turn / TURN_PERIODS - 1u));
+    add_window(d, l, s->at_zero ? last : (uint16_t)(s->turn / TURN_PERIODS - 1u));
   }
 }
 
@@ -152,6 +170,7 @@ bool commissioning_climb(drive_t* d) {
   if (s->index >= STAIRCASE_LEVELS) {
     commissioning_set_d(d, 0);
     if (d->control.references.current_q20.d != 0) return false;
+    if (s->at_zero && s->tick == 0) drive_parameters_changed();  // the pulses of before
     s->tick = qc_add_sat(s->tick, 1);
     commissioning_add_still(d);
     return s->tick > SETTLE_PERIODS + 1;
