@@ -3,32 +3,33 @@
 #include "firmware/dictionary/parameters.h"
 #include "firmware/mode/commands.h"
 
-static comm_watchdog_t watcher;
-static uint32_t held_by;
-static uint32_t heard_ms;
-static uint32_t beside_text;  // the last number over the serial port, within link_timeout
-static uint32_t beside_text_ms;
-static bool energised;  // the start has been carried out
-static bool stopped;
+typedef struct {
+  uint32_t held_by;
+  uint32_t heard_ms;
+  uint32_t beside_text;  // the last number over the serial port, within link_timeout
+  uint32_t beside_text_ms;
+  comm_watchdog_t watcher;
+  bool energised;  // the start has been carried out
+  bool stopped;
+} comm_watchdog_state_t;
+static comm_watchdog_state_t self;
 
 void comm_watchdog_reset(void) {
-  watcher = COMM_WATCHDOG_NONE;
-  beside_text = 0;
-  energised = false;
-  stopped = false;
+  static const comm_watchdog_state_t at_rest = {0};
+  self = at_rest;
 }
 
 void comm_watchdog_begin(comm_watchdog_t port, uint32_t holder) {
-  watcher = port;
-  held_by = holder;
-  heard_ms = drive_time_ms();
-  energised = false;
-  stopped = false;
+  self.watcher = port;
+  self.held_by = holder;
+  self.heard_ms = drive_time_ms();
+  self.energised = false;
+  self.stopped = false;
 }
 
 bool comm_watchdog_release(void) {
-  if (watcher == COMM_WATCHDOG_BUS || watcher == COMM_WATCHDOG_OWN) return false;
-  watcher = COMM_WATCHDOG_NONE;
+  if (self.watcher == COMM_WATCHDOG_BUS || self.watcher == COMM_WATCHDOG_OWN) return false;
+  self.watcher = COMM_WATCHDOG_NONE;
   return true;
 }
 
@@ -36,31 +37,31 @@ static bool is_over(uint32_t since_ms) { return drive_time_ms() - since_ms >= (u
 
 void comm_watchdog_heard(comm_watchdog_t port, uint32_t holder) {
   if (port == COMM_WATCHDOG_SERIAL) {
-    beside_text = holder;
-    beside_text_ms = drive_time_ms();
+    self.beside_text = holder;
+    self.beside_text_ms = drive_time_ms();
   }
-  if (port == watcher && holder == held_by) heard_ms = drive_time_ms();
+  if (port == self.watcher && holder == self.held_by) self.heard_ms = drive_time_ms();
 }
 
 bool comm_watchdog_key(void) {
-  if (watcher == COMM_WATCHDOG_KEYS) heard_ms = drive_time_ms();
-  return watcher == COMM_WATCHDOG_KEYS;
+  if (self.watcher == COMM_WATCHDOG_KEYS) self.heard_ms = drive_time_ms();
+  return self.watcher == COMM_WATCHDOG_KEYS;
 }
 
-uint32_t comm_watchdog_beside_text(void) { return beside_text; }
+uint32_t comm_watchdog_beside_text(void) { return self.beside_text; }
 
 void comm_watchdog_service(void) {
-  if (is_over(beside_text_ms)) beside_text = 0;
-  if (watcher == COMM_WATCHDOG_NONE) return;
+  if (is_over(self.beside_text_ms)) self.beside_text = 0;
+  if (self.watcher == COMM_WATCHDOG_NONE) return;
   const bool now = drive_is_energised();
-  if ((energised && !now) || drive_state() == DRIVE_FAULT) {
-    watcher = COMM_WATCHDOG_NONE;
+  if ((self.energised && !now) || drive_state() == DRIVE_FAULT) {
+    self.watcher = COMM_WATCHDOG_NONE;
     return;
   }
-  energised = now;
-  if (watcher == COMM_WATCHDOG_OWN || !is_over(heard_ms)) return;
-  watcher = COMM_WATCHDOG_NONE;
-  stopped = energised;
+  self.energised = now;
+  if (self.watcher == COMM_WATCHDOG_OWN || !is_over(self.heard_ms)) return;
+  self.watcher = COMM_WATCHDOG_NONE;
+  self.stopped = self.energised;
   if (parameters.link_reaction == LINK_REACTION_COAST) {
     drive_command_coast();
   } else {
@@ -68,8 +69,8 @@ void comm_watchdog_service(void) {
   }
 }
 
-bool comm_watchdog_is_on(void) { return watcher != COMM_WATCHDOG_NONE; }
+bool comm_watchdog_is_on(void) { return self.watcher != COMM_WATCHDOG_NONE; }
 
-bool comm_watchdog_is_of(uint32_t holder) { return comm_watchdog_is_on() && holder != 0u && holder == held_by; }
+bool comm_watchdog_is_of(uint32_t holder) { return comm_watchdog_is_on() && holder != 0u && holder == self.held_by; }
 
-bool comm_watchdog_has_stopped(void) { return stopped; }
+bool comm_watchdog_has_stopped(void) { return self.stopped; }

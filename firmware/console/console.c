@@ -23,32 +23,34 @@
 #define LINE_FEED 0x0Au
 #define RETURN 0x0Du
 
-static editor_t editor;
-static editor_line_t command;  // the one that is being answered
-static uint16_t kept[KEPT];
-static uint16_t kept_first, kept_count;
-static bool someone_types;
-static uint16_t faults_shown;
-static uint16_t errors_before;  // of the port, when the line began
-static uint16_t errors_at_key;
-static uint32_t heard_ms;
-static bool silence_shown;
+static struct {
+  uint32_t heard_ms;
+  uint16_t kept_first, kept_count;
+  bool someone_types;
+  uint16_t faults_shown;
+  uint16_t errors_before;  // of the port, when the line began
+  uint16_t errors_at_key;
+  bool silence_shown;
+  editor_t editor;
+  editor_line_t command;  // the one that is being answered
+  uint16_t kept[KEPT];
+} self;
 
 void console_reset(void) {
-  editor_reset(&editor);
+  editor_reset(&self.editor);
   output_reset();
   console_work.function = NULL;
-  kept_first = 0;
-  kept_count = 0;
-  someone_types = false;
-  faults_shown = 0;
-  errors_before = 0;
-  errors_at_key = 0;
-  heard_ms = 0;
-  silence_shown = false;
+  self.kept_first = 0;
+  self.kept_count = 0;
+  self.someone_types = false;
+  self.faults_shown = 0;
+  self.errors_before = 0;
+  self.errors_at_key = 0;
+  self.heard_ms = 0;
+  self.silence_shown = false;
 }
 
-static void give_way(void) { someone_types = false; }
+static void give_way(void) { self.someone_types = false; }
 
 static void prompt(void) {
   put_text(line_begin(), EDITOR_PROMPT);
@@ -68,42 +70,42 @@ static uint16_t port_errors(void) {
 // What a disturbed line says may be something else than what was sent. Only what makes the drive safe is done all the
 // same.
 static void obey(void) {
-  const bool damaged = editor.disturbed || port_errors() != errors_before;
-  command = editor.line;
-  if (editor.too_long) {
+  const bool damaged = self.editor.disturbed || port_errors() != self.errors_before;
+  self.command = self.editor.line;
+  if (self.editor.too_long) {
     line_refused(SAY_a_line_has_at_most_80_characters);
-  } else if (damaged && !command_makes_safe(&command)) {
+  } else if (damaged && !command_makes_safe(&self.command)) {
     line_refused(SAY_the_line_was_disturbed_on_its_way);
   } else {
-    command_obey(&command, editor.expired);
+    command_obey(&self.command, self.editor.expired);
   }
 }
 
 static void edit(uint16_t octet) {
-  if (editor.line.count == 0u) {  // what it had was taken back
-    editor.expired = editor.cut;
-    errors_before = port_errors();
+  if (self.editor.line.count == 0u) {  // what it had was taken back
+    self.editor.expired = self.editor.cut;
+    self.errors_before = port_errors();
   } else if ((octet & AFTER_PAUSE) != 0u) {
-    editor.expired = true;
+    self.editor.expired = true;
   }
-  const editor_event_t event = editor_octet(&editor, octet, line_begin());
+  const editor_event_t event = editor_octet(&self.editor, octet, line_begin());
   line_flush();
   if (event == EDITOR_DONE) {
     obey();
-    editor_next(&editor);
+    editor_next(&self.editor);
   }
   if (event != EDITOR_NOTHING && console_work.function == NULL) prompt();
 }
 
-static bool keeps_more(void) { return kept_count < KEPT; }
+static bool keeps_more(void) { return self.kept_count < KEPT; }
 
 static void keep(uint16_t octet) {
-  kept[(uint16_t)(kept_first + kept_count) & (KEPT - 1u)] = octet;
-  kept_count++;
+  self.kept[(uint16_t)(self.kept_first + self.kept_count) & (KEPT - 1u)] = octet;
+  self.kept_count++;
 }
 
 static void break_off(void) {
-  kept_count = 0;
+  self.kept_count = 0;
   line_of(SAY_ctrl_c);
   end_job();
 }
@@ -112,8 +114,8 @@ static void break_off(void) {
 static bool asks_to_stop(void) {
   static editor_line_t last;
   last.count = 0;
-  for (uint16_t k = 0; k + 1u < kept_count; k++) {
-    const uint16_t octet = kept[(uint16_t)(kept_first + k) & (KEPT - 1u)] & 0xFFu;
+  for (uint16_t k = 0; k + 1u < self.kept_count; k++) {
+    const uint16_t octet = self.kept[(uint16_t)(self.kept_first + k) & (KEPT - 1u)] & 0xFFu;
     if (octet == RETURN || octet == LINE_FEED) {
       last.count = 0;
     } else {
@@ -121,35 +123,35 @@ static bool asks_to_stop(void) {
     }
   }
   if (!command_makes_safe(&last)) return false;
-  command = last;
+  self.command = last;
   return true;
 }
 
 // To stop does not wait for the end of a long answer.
 static void stop_at_once(void) {
   console_work.function = NULL;
-  kept_count = 0;
+  self.kept_count = 0;
   line_of(SAY_the_answer_and_what_was_typed_ahead);
-  command_obey(&command, false);
+  command_obey(&self.command, false);
   prompt();
 }
 
 static void cut(void) {
-  editor_cut(&editor, kept_count > 0u);
-  kept_count = 0;
+  editor_cut(&self.editor, self.kept_count > 0u);
+  self.kept_count = 0;
 }
 
 // What a loose cable sends is nobody's key. Zeros do not come here: they are the ends of records.
 static bool is_key(uint16_t octet) {
   const uint16_t errors = port_errors();
-  const bool clean = errors == errors_at_key;
-  errors_at_key = errors;
+  const bool clean = errors == self.errors_at_key;
+  self.errors_at_key = errors;
   return clean && octet < BEHIND_KEYS;
 }
 
 // The space bar that holds the motor neither fills the line nor ends an answer.
 static bool only_holds(uint16_t octet) {
-  return is_key(octet) && comm_watchdog_key() && octet == ' ' && editor.line.count == 0u && kept_count == 0u;
+  return is_key(octet) && comm_watchdog_key() && octet == ' ' && self.editor.line.count == 0u && self.kept_count == 0u;
 }
 
 static void take_key(uint16_t octet) {
@@ -157,9 +159,9 @@ static void take_key(uint16_t octet) {
     cut();
     return;
   }
-  const uint32_t pause_ms = drive_time_ms() - heard_ms;
-  heard_ms += pause_ms;
-  someone_types = true;
+  const uint32_t pause_ms = drive_time_ms() - self.heard_ms;
+  self.heard_ms += pause_ms;
+  self.someone_types = true;
   if (only_holds(octet)) return;
   if (console_work.function != NULL && octet == CTRL_C) {
     break_off();
@@ -167,7 +169,7 @@ static void take_key(uint16_t octet) {
   }
   if (console_work.function != NULL && console_work.ends_by_key) end_job();
   if (pause_ms >= EXPIRES_MS) octet |= AFTER_PAUSE;
-  if (console_work.function == NULL && kept_count == 0u) {
+  if (console_work.function == NULL && self.kept_count == 0u) {
     edit(octet);
     return;
   }
@@ -187,11 +189,11 @@ const text_port_t console_text_port = {keeps_more, take_key, give_way};
 static void tell(void) {
   fault_record_t fault;
   const uint16_t total = fault_history_total();
-  const bool faulted = total != faults_shown && fault_history_read(0, &fault);
-  const bool silent = comm_watchdog_has_stopped() && !silence_shown;
-  faults_shown = total;
-  silence_shown = comm_watchdog_has_stopped();
-  if (!someone_types || !(faulted || silent)) return;
+  const bool faulted = total != self.faults_shown && fault_history_read(0, &fault);
+  const bool silent = comm_watchdog_has_stopped() && !self.silence_shown;
+  self.faults_shown = total;
+  self.silence_shown = comm_watchdog_has_stopped();
+  if (!self.someone_types || !(faulted || silent)) return;
   octet_writer_t* const w = line_begin();
   put_text(w, "\r\n! ");
   if (faulted) {
@@ -201,7 +203,7 @@ static void tell(void) {
     put_packed(w, SAY_nothing_was_heard_for_link_timeout);
   }
   line_end();
-  editor_show(&editor, line_begin());
+  editor_show(&self.editor, line_begin());
   line_flush();
 }
 
@@ -209,10 +211,10 @@ void console_service(void) {
   if (hal_sci_room() < ROOM) return;
   if (console_work.function != NULL) {
     if (!console_work.function(console_work.step++)) end_job();
-  } else if (kept_count > 0u) {
-    const uint16_t octet = kept[kept_first];
-    kept_first = (uint16_t)(kept_first + 1u) & (KEPT - 1u);
-    kept_count--;
+  } else if (self.kept_count > 0u) {
+    const uint16_t octet = self.kept[self.kept_first];
+    self.kept_first = (uint16_t)(self.kept_first + 1u) & (KEPT - 1u);
+    self.kept_count--;
     edit(octet);
   } else {
     tell();

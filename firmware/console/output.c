@@ -5,22 +5,24 @@
 
 #define RESERVED 5u  // three points and the line's end
 
-static uint16_t block[TEXT_LINE_MAX];
-static octet_writer_t line;
+static struct {
+  octet_writer_t line;
+  uint16_t block[TEXT_LINE_MAX];
+} self;
 
 void output_reset(void) { feature_status.refusals = 0; }
 
 octet_writer_t* line_begin(void) {
-  line = octet_writer(block, TEXT_LINE_MAX - RESERVED);
-  return &line;
+  self.line = octet_writer(self.block, TEXT_LINE_MAX - RESERVED);
+  return &self.line;
 }
 
-void line_flush(void) { (void)hal_sci_write(block, line.count); }
+void line_flush(void) { (void)hal_sci_write(self.block, self.line.count); }
 
 void line_end(void) {
-  line.room = TEXT_LINE_MAX;
-  if (line.full) put_text(&line, "...");
-  put_text(&line, "\r\n");
+  self.line.room = TEXT_LINE_MAX;
+  if (self.line.full) put_text(&self.line, "...");
+  put_text(&self.line, "\r\n");
   line_flush();
 }
 
@@ -43,7 +45,7 @@ void line_refused(packed_text_t text) {
 
 void line_answer(bool done, packed_text_t text) {
   if (done) {
-    put_packed(&line, text);
+    put_packed(&self.line, text);
     line_end();
   } else {
     line_end_refused();

@@ -15,23 +15,25 @@
 #endif
 #define EVENT_WIRE_MAX (2u + 4u + 4u * STREAM_SIGNALS + 1u + 5u)  // with CRC, code octet and zeros
 
-static splitter_t splitter;
-static uint16_t text_at, text_end;  // text in the splitter's block that nobody has had yet
-static uint16_t wire[WIRE_MAX];
-static uint16_t* const record = &wire[RECORD_IN_WIRE];
+static struct {
+  uint16_t text_at, text_end;  // text in the splitter's block that nobody has had yet
+  splitter_t splitter;
+  uint16_t wire[WIRE_MAX];
+} self;
+static uint16_t* const record = &self.wire[RECORD_IN_WIRE];
 
 void link_reset(void) {
   comm_watchdog_reset();
-  splitter_reset(&splitter);
-  text_at = 0;
-  text_end = 0;
+  splitter_reset(&self.splitter);
+  self.text_at = 0;
+  self.text_end = 0;
   requests_reset();
   stream_reset();
 }
 
 // There has to be room.
 static void send(uint16_t count) {
-  if (count > 0u) (void)hal_sci_write(wire, record_to_wire(record, count, wire));
+  if (count > 0u) (void)hal_sci_write(self.wire, record_to_wire(record, count, self.wire));
 }
 
 // Only into a ring that is all but empty, so that a stream too fast for the port leaves room for all else; the port's
@@ -42,23 +44,24 @@ static void send_event(void) {
 }
 
 static void answer(void) {  // take_octet has seen to the room
-  send(request_answer(COMM_WATCHDOG_SERIAL, splitter.octets, splitter.count, record));
+  send(request_answer(COMM_WATCHDOG_SERIAL, self.splitter.octets, self.splitter.count, record));
 }
 
 static void sort(int16_t found) {
   if (found == SPLITTER_RECORD) {
-    if (edition_text_port != NULL && (splitter.octets[0] & 0xFFu) == REQUEST_IDENTITY) edition_text_port->give_way();
+    if (edition_text_port != NULL && (self.splitter.octets[0] & 0xFFu) == REQUEST_IDENTITY)
+      edition_text_port->give_way();
     answer();
   } else {
-    text_at = 0;
-    text_end = (edition_text_port != NULL) ? (uint16_t)found : 0u;
+    self.text_at = 0;
+    self.text_end = (edition_text_port != NULL) ? (uint16_t)found : 0u;
   }
 }
 
 // A break is the terminal's way to say that what came before does not count.
 static void forget(void) {
-  splitter.in_record = false;
-  text_at = text_end;
+  self.splitter.in_record = false;
+  self.text_at = self.text_end;
   if (edition_text_port != NULL) edition_text_port->octet(TEXT_BREAK);
 }
 
@@ -67,16 +70,16 @@ static bool take_octet(void) {
   uint16_t octet;
   if (hal_sci_take_break()) forget();
   if (hal_sci_room() < WIRE_MAX) return false;
-  if (text_at < text_end) {
+  if (self.text_at < self.text_end) {
     if (!edition_text_port->takes()) return false;
-    edition_text_port->octet(splitter.octets[text_at++]);
+    edition_text_port->octet(self.splitter.octets[self.text_at++]);
     return true;
   }
   if (hal_sci_read(&octet, 1) == 0u) {
-    sort(splitter_rest(&splitter, drive_time_ms()));
+    sort(splitter_rest(&self.splitter, drive_time_ms()));
     return false;
   }
-  const int16_t found = splitter_octet(&splitter, octet, drive_time_ms());
+  const int16_t found = splitter_octet(&self.splitter, octet, drive_time_ms());
   sort(found);
   return found != SPLITTER_RECORD;
 }
@@ -91,7 +94,7 @@ void link_service(void) {
 
 link_errors_t link_errors(void) {
   link_errors_t e;
-  e.records = splitter.errors;
+  e.records = self.splitter.errors;
   e.port = hal_sci_errors();
   e.events_dropped = stream_lost(COMM_WATCHDOG_SERIAL);
   return e;

@@ -40,21 +40,20 @@ static void put_signal(octet_writer_t* w, const signal_info_t* s) {
 }
 
 // The tables' check sum, taken piece by piece: all parameters as put_parameter gives them, all signals, all words.
-static struct {
+typedef struct {
   uint32_t crc;
-  bool in_words;  // the tables are through
-  uint16_t kind;  // of words
-  uint16_t at;    // in the words of a kind, or in parameters and signals counted through
-  bool complete;
+  uint16_t stage;   // 0: parameters and signals, then one for each kind of words
+  uint16_t at;      // in the words of a kind, or in parameters and signals counted through
   uint16_t scales;  // that it was begun with: formats and ranges in it follow from them
-} sum;
+} sum_t;
+static sum_t sum;
+
+static bool is_complete(void) { return sum.stage > CATALOGUES; }
 
 void requests_reset(void) {
+  static const sum_t nothing = {0};
+  sum = nothing;
   sum.crc = CRC32_BEGIN;
-  sum.in_words = false;
-  sum.kind = 0;
-  sum.at = 0;
-  sum.complete = false;
   sum.scales = unit_scales();
 }
 
@@ -62,32 +61,36 @@ static void add(const octet_writer_t* piece) {
   for (uint16_t k = 0; k < piece->count; k++) sum.crc = crc32_add(sum.crc, piece->octets[k]);
 }
 
+static void next_stage(void) {
+  sum.at = 0;
+  sum.stage++;
+}
+
 static void next_words(octet_writer_t* piece) {
-  if (message_is_known(sum.kind, sum.at)) {
-    if (message_exists(sum.kind, sum.at)) put_message(piece, (catalogue_t)sum.kind, sum.at);
-    sum.at++;
+  const uint16_t kind = (uint16_t)(sum.stage - 1u);
+  if (!message_is_known(kind, sum.at)) {
+    next_stage();
     return;
   }
-  sum.at = 0;
-  sum.kind++;
-  sum.complete = sum.kind == CATALOGUES;
+  if (message_exists(kind, sum.at)) put_message(piece, (catalogue_t)kind, sum.at);
+  sum.at++;
 }
 
 void requests_service(uint16_t* scratch) {
   if (sum.scales != unit_scales()) requests_reset();
-  if (sum.complete) return;
+  if (is_complete()) return;
   octet_writer_t piece = octet_writer(scratch, RECORD_BODY_MAX);
-  if (sum.in_words) {
+  if (sum.stage > 0u) {
     next_words(&piece);
   } else if (sum.at < parameter_count()) {
     put_parameter(&piece, parameter_info(sum.at++));
   } else {
-    const signal_info_t* const s = signal_info((uint16_t)(sum.at++ - parameter_count()));
-    if (s != NULL) {
-      if (!signal_is_left_out((uint16_t)(sum.at - 1u - parameter_count()))) put_signal(&piece, s);
-    } else {
-      sum.in_words = true;
-      sum.at = 0;
+    const uint16_t place = (uint16_t)(sum.at++ - parameter_count());
+    const signal_info_t* const s = signal_info(place);
+    if (s == NULL) {
+      next_stage();
+    } else if (!signal_is_left_out(place)) {
+      put_signal(&piece, s);
     }
   }
   add(&piece);
@@ -109,7 +112,7 @@ static void put_build(octet_writer_t* w) {
 }
 
 static answer_status_t request_identity(request_t* r) {
-  if (!sum.complete) return ANSWER_BUSY;
+  if (!is_complete()) return ANSWER_BUSY;
   put_u16(&r->answer, LINK_PROTOCOL);
   put_u16(&r->answer, parameter_count());
   put_u16(&r->answer, signal_count());

@@ -14,14 +14,16 @@ typedef struct {
   uint32_t last_ms;
 } stream_t;
 
-static stream_t serial, bus;
+static struct {
+  stream_t serial, bus;
+} self;
 
-static stream_t* of(comm_watchdog_t port) { return (port == COMM_WATCHDOG_BUS) ? &bus : &serial; }
+static stream_t* of(comm_watchdog_t port) { return (port == COMM_WATCHDOG_BUS) ? &self.bus : &self.serial; }
 
 void stream_reset(void) {
   static const stream_t none = {0};
-  serial = none;
-  bus = none;
+  self.serial = none;
+  self.bus = none;
 }
 
 void stream_setup(comm_watchdog_t port, uint16_t period_ms, const uint16_t* places, uint16_t number) {

@@ -14,20 +14,22 @@
 // feature_status.store_work
 enum { WORK_NONE, WORK_LOAD, WORK_SURVEY, WORK_WRITE };
 
-static bool begun;  // false: asked for, store_service begins
-static store_state_t state;
-static store_report_t report;
-static bool kept_known;   // the staged set is what the next power-on will have
-static uint16_t unsaved;  // as long as the staged set is at work
+static struct {
+  uint16_t state;    // store_state_t
+  bool begun;        // false: asked for, store_service begins
+  bool kept_known;   // the staged set is what the next power-on will have
+  uint16_t unsaved;  // as long as the staged set is at work
+  store_report_t report;
+} self;
 
-store_state_t store_state(void) { return state; }
+store_state_t store_state(void) { return (store_state_t)self.state; }
 
 bool store_is_busy(void) { return feature_status.store_work != WORK_NONE; }
 
-const store_report_t* store_report(void) { return &report; }
+const store_report_t* store_report(void) { return &self.report; }
 
 uint16_t store_progress(void) {
-  if (store_is_busy() && !begun) return 0;
+  if (store_is_busy() && !self.begun) return 0;
   switch (feature_status.store_work) {
     case WORK_LOAD:
       return scan_progress();
@@ -41,12 +43,12 @@ uint16_t store_progress(void) {
 }
 
 uint16_t store_unsaved(void) {
-  if (!store_is_busy()) unsaved = kept_known ? values_changed() : UNSAVED_UNKNOWN;
-  return unsaved;
+  if (!store_is_busy()) self.unsaved = self.kept_known ? values_changed() : UNSAVED_UNKNOWN;
+  return self.unsaved;
 }
 
 void store_status_update(void) {
-  feature_status.store_state = (uint16_t)state;
+  feature_status.store_state = self.state;
   feature_status.store_progress = store_progress();
   feature_status.unsaved = store_unsaved();
 }
@@ -54,20 +56,20 @@ void store_status_update(void) {
 void store_reset(void) {
   static const store_report_t nothing = {0};
   values_reset();
-  kept_known = true;
-  unsaved = 0;
+  self.kept_known = true;
+  self.unsaved = 0;
   feature_status.store_work = WORK_NONE;
   feature_status.loading = false;
-  state = STORE_EMPTY;
-  report = nothing;
-  report.slot = SLOTS;
+  self.state = STORE_EMPTY;
+  self.report = nothing;
+  self.report.slot = SLOTS;
 }
 
 static void begin(uint16_t what, store_state_t meanwhile) {
   (void)store_unsaved();
   feature_status.store_work = what;
-  state = meanwhile;
-  begun = false;
+  self.state = (uint16_t)meanwhile;
+  self.begun = false;
 }
 
 void store_begin(void) {
@@ -98,7 +100,7 @@ bool store_defaults(void) {
 
 static void end(store_state_t result) {
   feature_status.store_work = WORK_NONE;
-  state = result;
+  self.state = (uint16_t)result;
 }
 
 // The staged set into force, as a whole or not at all.
@@ -110,16 +112,16 @@ static store_state_t take_over(void) {
     values_swap();
     return STORE_CONFLICT;
   }
-  if (report.older) return STORE_OLDER;
-  const bool other_firmware =
-      report.rescaled > 0u || report.refused > 0u || report.missing > 0u || report.unknown > report.left_out;
+  if (self.report.older) return STORE_OLDER;
+  const bool other_firmware = self.report.rescaled > 0u || self.report.refused > 0u || self.report.missing > 0u ||
+                              self.report.unknown > self.report.left_out;
   return other_firmware ? STORE_MIGRATED : STORE_LOADED;
 }
 
 // The values in force are the kept ones, or nothing that can be used is kept: the next power-on has the defaults.
 static void end_load(store_state_t result) {
   end(result);
-  kept_known = true;
+  self.kept_known = true;
   if (result == STORE_LOADED || result == STORE_MIGRATED || result == STORE_OLDER) {
     values_copy();
   } else if (result != STORE_FAILED) {
@@ -134,7 +136,7 @@ static void load(void) {
                                            [SCAN_FAILED] = STORE_ABSENT};
   const scan_result_t result = scan_step();
   if (result == SCAN_GOES_ON) return;
-  report = *scan_report();
+  self.report = *scan_report();
   end_load((result == SCAN_FOUND) ? take_over() : (store_state_t)nothing_found[result]);
 }
 
@@ -143,7 +145,7 @@ static void scan(void) {
   const scan_result_t result = scan_step();
   if (result == SCAN_GOES_ON) return;
   if (result == SCAN_FAILED || !writer_begin(scan_report())) {
-    kept_known = false;
+    self.kept_known = false;
     end(STORE_FAILED);
   } else {
     feature_status.store_work = WORK_WRITE;
@@ -153,14 +155,14 @@ static void scan(void) {
 static void save(void) {
   const writer_result_t result = writer_step();
   if (result == WRITER_GOES_ON) return;
-  kept_known = result == WRITER_DONE;
-  if (kept_known) report = writer_report();
-  end(kept_known ? STORE_SAVED : STORE_FAILED);
+  self.kept_known = result == WRITER_DONE;
+  if (self.kept_known) self.report = writer_report();
+  end(self.kept_known ? STORE_SAVED : STORE_FAILED);
 }
 
 void store_service(void) {
-  if (store_is_busy() && !begun) {
-    begun = true;
+  if (store_is_busy() && !self.begun) {
+    self.begun = true;
     scan_begin(feature_status.store_work == WORK_LOAD);
     return;
   }

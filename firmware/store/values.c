@@ -6,31 +6,34 @@
 
 #define Q_MAX 31u  // fractional bits of a 32-bit number
 
-static parameters_t set;
-static bool has_rated_current;  // the set has a rated_current of its own
-static uint16_t guess;          // where the next number is likely to be: a slot has them in the table's order
+static struct {
+  bool has_rated_current;  // the set has a rated_current of its own
+  uint16_t guess;          // where the next number is likely to be: a slot has them in the table's order
+  parameters_t set;
+} self;
 
 // Index of a parameter, parameter_count() when there is none.
 static uint16_t find(uint16_t id) {
   const uint16_t count = parameter_count();
   for (uint16_t k = 0; k < count; k++) {
-    const uint16_t index = (uint16_t)((guess + k) % count);
+    const uint16_t index = (uint16_t)((self.guess + k) % count);
     if (parameter_info(index)->id != id) continue;
-    guess = (uint16_t)((index + 1u) % count);
+    self.guess = (uint16_t)((index + 1u) % count);
     return index;
   }
   return count;
 }
 
 void values_reset(void) {
-  guess = 0;
-  has_rated_current = false;
-  for (uint16_t k = 0; k < parameter_count(); k++) *parameter_value(&set, k) = parameter_initial(parameter_info(k));
+  self.guess = 0;
+  self.has_rated_current = false;
+  for (uint16_t k = 0; k < parameter_count(); k++)
+    *parameter_value(&self.set, k) = parameter_initial(parameter_info(k));
 }
 
 void values_copy(void) {
-  guess = 0;
-  set = parameters;
+  self.guess = 0;
+  self.set = parameters;
 }
 
 bool values_know(uint16_t id) { return find(id) < parameter_count(); }
@@ -52,31 +55,31 @@ value_fate_t values_put(const slot_entry_t* entry) {
   const int32_t least = parameter_minimum(info);
   const int32_t most = parameter_maximum(info);
   if (raw < qc_sub_sat(least, slack) || raw > qc_add_sat(most, slack)) return VALUE_REFUSED;
-  int32_t* const place = parameter_value(&set, index);
+  int32_t* const place = parameter_value(&self.set, index);
   const int32_t before = *place;
   *place = q_clamp(raw, least, most);
-  if (drive_source_is_left_out(&set)) {
+  if (drive_source_is_left_out(&self.set)) {
     *place = before;
     return VALUE_REFUSED;
   }
-  if (place == &set.rated_current) has_rated_current = true;
+  if (place == &self.set.rated_current) self.has_rated_current = true;
   return (more == 0) ? VALUE_TAKEN : VALUE_RESCALED;
 }
 
 void values_complete(void) {
-  if (!has_rated_current && set.overload_current == 0) set.overload_current = -1;
+  if (!self.has_rated_current && self.set.overload_current == 0) self.set.overload_current = -1;
 }
 
 slot_entry_t values_entry(uint16_t index) {
   const parameter_info_t* const info = parameter_info(index);
-  const slot_entry_t entry = {info->id, info->q, *parameter_value(&set, index)};
+  const slot_entry_t entry = {info->id, info->q, *parameter_value(&self.set, index)};
   return entry;
 }
 
 uint16_t values_changed(void) {
   uint16_t changed = 0;
   for (uint16_t k = 0; k < parameter_count(); k++) {
-    if (*parameter_value(&parameters, k) != *parameter_value(&set, k)) changed++;
+    if (*parameter_value(&parameters, k) != *parameter_value(&self.set, k)) changed++;
   }
   return changed;
 }
@@ -84,7 +87,7 @@ uint16_t values_changed(void) {
 void values_swap(void) {
   for (uint16_t k = 0; k < parameter_count(); k++) {
     const int32_t kept = *parameter_value(&parameters, k);
-    *parameter_value(&parameters, k) = *parameter_value(&set, k);
-    *parameter_value(&set, k) = kept;
+    *parameter_value(&parameters, k) = *parameter_value(&self.set, k);
+    *parameter_value(&self.set, k) = kept;
   }
 }

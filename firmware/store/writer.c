@@ -7,80 +7,82 @@
 #include "firmware/store/values.h"
 #include "hal/hal_nvm.h"
 
-typedef enum { COMPOSE, WRITE_PAGE, READ_BACK, WRITE_MAGIC, READ_MAGIC } stage_t;
+enum { COMPOSE, WRITE_PAGE, READ_BACK, WRITE_MAGIC, READ_MAGIC };
 
-static stage_t stage;
-static uint16_t old_slot, new_slot;  // old_slot: SLOTS when there is none
-static slot_header_t header;
-static uint16_t page[HAL_NVM_PAGE];
-static uint16_t filled;           // octets of the page
-static uint16_t written;          // octets of the slot in the memory
-static uint16_t next;             // parameter to be written
-static uint16_t unknown, copied;  // entries of the old slot
-static bool fetching;             // the old slot is being read
-static bool complete;             // the check has been put into the page
-static uint32_t crc;
+static struct {
+  uint32_t crc;
+  uint16_t stage;
+  uint16_t old_slot, new_slot;  // old_slot: SLOTS when there is none
+  uint16_t filled;              // octets of the page
+  uint16_t written;             // octets of the slot in the memory
+  uint16_t next;                // parameter, then of what is copied, to be written
+  uint16_t unknown;             // entries of the old slot
+  bool fetching;                // the old slot is being read
+  bool complete;                // the check has been put into the page
+  slot_header_t header;
+  uint16_t page[HAL_NVM_PAGE];
+} self;
 
-static uint16_t slot_octets(void) { return (uint16_t)(SLOT_HEADER + header.length + SLOT_CHECK); }
+static uint16_t slot_octets(void) { return (uint16_t)(SLOT_HEADER + self.header.length + SLOT_CHECK); }
 
 uint16_t writer_progress(void) {
-  const uint16_t share = (uint16_t)(90uL * written / slot_octets());
-  if (stage == COMPOSE || stage == WRITE_PAGE) return share;
-  return (stage == READ_BACK) ? (uint16_t)(90u + reader_progress() / 20u) : 95u;
+  const uint16_t share = (uint16_t)(90uL * self.written / slot_octets());
+  if (self.stage == COMPOSE || self.stage == WRITE_PAGE) return share;
+  return (self.stage == READ_BACK) ? (uint16_t)(90u + reader_progress() / 20u) : 95u;
 }
 
 store_report_t writer_report(void) {
   store_report_t report = {0};
-  report.slot = report.newest = new_slot;
-  report.sequence = header.sequence;
-  report.values = header.count;
-  report.unknown = unknown;
+  report.slot = report.newest = self.new_slot;
+  report.sequence = self.header.sequence;
+  report.values = self.header.count;
+  report.unknown = self.unknown;
   return report;
 }
 
 static void put(uint16_t octets) {
-  for (uint16_t k = 0; k < octets; k++) crc = crc32_add(crc, page[filled + k]);
-  filled = (uint16_t)(filled + octets);
+  for (uint16_t k = 0; k < octets; k++) self.crc = crc32_add(self.crc, self.page[self.filled + k]);
+  self.filled = (uint16_t)(self.filled + octets);
 }
 
 bool writer_begin(const store_report_t* so_far) {
   if (so_far->unknown > SLOT_ENTRIES_MAX - parameter_count()) return false;
-  old_slot = so_far->slot;
+  self.old_slot = so_far->slot;
   // The newest slot is spared, also when another firmware wrote it and this one's own values lie in the other.
-  new_slot = (so_far->newest == 0u) ? 1u : 0u;
-  unknown = (old_slot < SLOTS && old_slot != new_slot) ? so_far->unknown : 0u;
-  header.magic = 0xFFFFFFFFuL;
-  header.version = SLOT_VERSION;
-  header.count = (uint16_t)(parameter_count() + unknown);
-  header.sequence = so_far->sequence + 1u;
-  header.length = (uint16_t)(header.count * SLOT_ENTRY);
-  slot_pack_header(&header, page);
-  crc = CRC32_BEGIN;
-  filled = SLOT_MAGIC_OCTETS;
+  self.new_slot = (so_far->newest == 0u) ? 1u : 0u;
+  self.unknown = (self.old_slot < SLOTS && self.old_slot != self.new_slot) ? so_far->unknown : 0u;
+  self.header.magic = 0xFFFFFFFFuL;
+  self.header.version = SLOT_VERSION;
+  self.header.count = (uint16_t)(parameter_count() + self.unknown);
+  self.header.sequence = so_far->sequence + 1u;
+  self.header.length = (uint16_t)(self.header.count * SLOT_ENTRY);
+  slot_pack_header(&self.header, self.page);
+  self.crc = CRC32_BEGIN;
+  self.filled = SLOT_MAGIC_OCTETS;
   put(SLOT_HEADER - SLOT_MAGIC_OCTETS);
-  written = next = copied = 0;
-  fetching = complete = false;
-  stage = COMPOSE;
+  self.written = self.next = 0;
+  self.fetching = self.complete = false;
+  self.stage = COMPOSE;
   return true;
 }
 
 static void put_entry(const slot_entry_t* entry) {
-  slot_pack_entry(entry, page + filled);
+  slot_pack_entry(entry, self.page + self.filled);
   put(SLOT_ENTRY);
 }
 
 // The next unknown entry of the old slot, when it has arrived.
 static writer_result_t copy_unknown(void) {
   slot_entry_t entry;
-  if (!fetching) reader_begin(old_slot);
-  fetching = true;
+  if (!self.fetching) reader_begin(self.old_slot);
+  self.fetching = true;
   switch (reader_step(&entry)) {
     case READER_WAITS:
       return WRITER_GOES_ON;
     case READER_ENTRY:
       if (values_know(entry.id)) return WRITER_GOES_ON;
       put_entry(&entry);
-      copied++;
+      self.next++;
       return WRITER_GOES_ON;
     default:
       return WRITER_FAILED;  // it has fewer than the scan counted, or cannot be read
@@ -88,31 +90,31 @@ static writer_result_t copy_unknown(void) {
 }
 
 static writer_result_t compose(void) {
-  if (complete || filled > HAL_NVM_PAGE - SLOT_ENTRY) {
-    stage = WRITE_PAGE;
-    const uint16_t address = (uint16_t)(new_slot * SLOT_SIZE + written);
-    return hal_nvm_write(address, page, filled) ? WRITER_GOES_ON : WRITER_FAILED;
+  if (self.complete || self.filled > HAL_NVM_PAGE - SLOT_ENTRY) {
+    self.stage = WRITE_PAGE;
+    const uint16_t address = (uint16_t)(self.new_slot * SLOT_SIZE + self.written);
+    return hal_nvm_write(address, self.page, self.filled) ? WRITER_GOES_ON : WRITER_FAILED;
   }
-  if (next < parameter_count()) {
-    const slot_entry_t entry = values_entry(next++);
+  if (self.next < parameter_count()) {
+    const slot_entry_t entry = values_entry(self.next++);
     put_entry(&entry);
     return WRITER_GOES_ON;
   }
-  if (copied < unknown) return copy_unknown();
-  slot_pack_u32(crc32_end(crc), page + filled);
-  filled = (uint16_t)(filled + SLOT_CHECK);
-  complete = true;
+  if (self.next < self.header.count) return copy_unknown();
+  slot_pack_u32(crc32_end(self.crc), self.page + self.filled);
+  self.filled = (uint16_t)(self.filled + SLOT_CHECK);
+  self.complete = true;
   return WRITER_GOES_ON;
 }
 
 static writer_result_t on_written(void) {
-  written = (uint16_t)(written + filled);
-  filled = 0;
-  if (!complete) {
-    stage = COMPOSE;
+  self.written = (uint16_t)(self.written + self.filled);
+  self.filled = 0;
+  if (!self.complete) {
+    self.stage = COMPOSE;
   } else {
-    stage = READ_BACK;
-    reader_begin(new_slot);
+    self.stage = READ_BACK;
+    reader_begin(self.new_slot);
   }
   return WRITER_GOES_ON;
 }
@@ -128,25 +130,27 @@ static writer_result_t read_back(void) {
     default:
       return WRITER_FAILED;
   }
-  if (reader_header()->sequence != header.sequence) return WRITER_FAILED;
-  stage = WRITE_MAGIC;
-  slot_pack_u32(SLOT_MAGIC, page);
-  return hal_nvm_write((uint16_t)(new_slot * SLOT_SIZE), page, SLOT_MAGIC_OCTETS) ? WRITER_GOES_ON : WRITER_FAILED;
+  if (reader_header()->sequence != self.header.sequence) return WRITER_FAILED;
+  self.stage = WRITE_MAGIC;
+  slot_pack_u32(SLOT_MAGIC, self.page);
+  return hal_nvm_write((uint16_t)(self.new_slot * SLOT_SIZE), self.page, SLOT_MAGIC_OCTETS) ? WRITER_GOES_ON
+                                                                                            : WRITER_FAILED;
 }
 
 static writer_result_t on_magic_written(void) {
-  stage = READ_MAGIC;
-  page[0] = 0;
-  return hal_nvm_read((uint16_t)(new_slot * SLOT_SIZE), page, SLOT_MAGIC_OCTETS) ? WRITER_GOES_ON : WRITER_FAILED;
+  self.stage = READ_MAGIC;
+  self.page[0] = 0;
+  return hal_nvm_read((uint16_t)(self.new_slot * SLOT_SIZE), self.page, SLOT_MAGIC_OCTETS) ? WRITER_GOES_ON
+                                                                                           : WRITER_FAILED;
 }
 
 writer_result_t writer_step(void) {
-  if (stage == COMPOSE) return compose();
-  if (stage == READ_BACK) return read_back();
+  if (self.stage == COMPOSE) return compose();
+  if (self.stage == READ_BACK) return read_back();
   const hal_nvm_state_t state = hal_nvm_step();
   if (state == NVM_BUSY) return WRITER_GOES_ON;
   if (state != NVM_DONE) return WRITER_FAILED;
-  if (stage == WRITE_PAGE) return on_written();
-  if (stage == WRITE_MAGIC) return on_magic_written();
-  return (slot_unpack_u32(page) == SLOT_MAGIC) ? WRITER_DONE : WRITER_FAILED;
+  if (self.stage == WRITE_PAGE) return on_written();
+  if (self.stage == WRITE_MAGIC) return on_magic_written();
+  return (slot_unpack_u32(self.page) == SLOT_MAGIC) ? WRITER_DONE : WRITER_FAILED;
 }

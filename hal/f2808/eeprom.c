@@ -12,64 +12,66 @@
 
 #define LINES_CYCLES (1000uL * HAL_TIME_CYCLES_PER_US)  // for lines to rise, far beyond what they need
 
-typedef enum { STAGE_NONE, STAGE_TRANSFER, STAGE_STORE, STAGE_CLEAR } stage_t;
+enum { STAGE_NONE, STAGE_TRANSFER, STAGE_STORE, STAGE_CLEAR };
 
-static i2c_transfer_t job;
-static stage_t stage;
-static bool begun;             // the stage's transfer; the lines must be high first
-static uint32_t wanted_since;  // cycles
-static hal_nvm_state_t state;
-static hal_nvm_fault_t fault;
-static uint16_t refusals;   // transfers that nobody answered
-static uint16_t clearings;  // of the bus
-static bool patient;        // the device may be storing a page: it does not answer then
-static uint32_t since;      // cycles, when that began
+static struct {
+  uint32_t wanted_since;  // cycles
+  uint32_t since;         // cycles, when that began
+  uint16_t stage;
+  uint16_t state;      // hal_nvm_state_t
+  uint16_t fault;      // hal_nvm_fault_t
+  bool begun;          // the stage's transfer; the lines must be high first
+  uint16_t refusals;   // transfers that nobody answered
+  uint16_t clearings;  // of the bus
+  bool patient;        // the device may be storing a page: it does not answer then
+  i2c_transfer_t job;
+} self;
 
 bool hal_nvm_init(void) {
-  stage = STAGE_NONE;
-  state = NVM_IDLE;
-  fault = NVM_NO_FAULT;
+  self.stage = STAGE_NONE;
+  self.state = NVM_IDLE;
+  self.fault = NVM_NO_FAULT;
   i2c_init();
   return i2c_lines_free();
 }
 
 static void clear_bus(void) {
-  clearings++;
-  stage = STAGE_CLEAR;
+  self.clearings++;
+  self.stage = STAGE_CLEAR;
   i2c_begin_clear();
 }
 
 // The job's transfer, or while the device stores the shortest transfer there is.
 static void try_to_begin(void) {
   if (!i2c_lines_free()) {
-    if (hal_time_cycles() - wanted_since > LINES_CYCLES) clear_bus();
+    if (hal_time_cycles() - self.wanted_since > LINES_CYCLES) clear_bus();
     return;
   }
-  i2c_transfer_t transfer = job;
-  if (stage == STAGE_STORE) {
+  i2c_transfer_t transfer = self.job;
+  if (self.stage == STAGE_STORE) {
     transfer.read = NULL;
     transfer.count = 0;
   }
-  begun = true;
+  self.begun = true;
   i2c_begin(&transfer);
 }
 
-static void begin(stage_t next) {
-  stage = next;
-  begun = false;
-  wanted_since = hal_time_cycles();
+static void begin(uint16_t next) {
+  self.stage = next;
+  self.begun = false;
+  self.wanted_since = hal_time_cycles();
   try_to_begin();
 }
 
 static bool begin_job(uint16_t address, uint16_t* read, const uint16_t* write, uint16_t count) {
-  if (state == NVM_BUSY || count == 0u || address >= HAL_NVM_SIZE || count > HAL_NVM_SIZE - address) return false;
+  if (self.state == NVM_BUSY || count == 0u || address >= HAL_NVM_SIZE || count > HAL_NVM_SIZE - address) return false;
   const i2c_transfer_t transfer = {DEVICE, address, read, write, count};
-  job = transfer;
-  state = NVM_BUSY;
-  fault = NVM_NO_FAULT;
-  refusals = 0;
-  clearings = 0;
-  patient = false;
+  self.job = transfer;
+  self.state = NVM_BUSY;
+  self.fault = NVM_NO_FAULT;
+  self.refusals = 0;
+  self.clearings = 0;
+  self.patient = false;
   begin(STAGE_TRANSFER);
   return true;
 }
@@ -84,18 +86,18 @@ bool hal_nvm_write(uint16_t address, const uint16_t* octets, uint16_t count) {
 }
 
 static void end(hal_nvm_state_t result, hal_nvm_fault_t why) {
-  stage = STAGE_NONE;
-  state = result;
-  fault = why;
+  self.stage = STAGE_NONE;
+  self.state = (uint16_t)result;
+  self.fault = (uint16_t)why;
 }
 
 static void be_patient(void) {
-  patient = true;
-  since = hal_time_cycles();
+  self.patient = true;
+  self.since = hal_time_cycles();
 }
 
 static void on_done(void) {
-  if (stage == STAGE_TRANSFER && job.write != NULL) {
+  if (self.stage == STAGE_TRANSFER && self.job.write != NULL) {
     be_patient();
     begin(STAGE_STORE);
   } else {
@@ -105,21 +107,21 @@ static void on_done(void) {
 
 // The time is looked at before the next try: at least one comes after the end of the patience, however rare the steps.
 static void on_no_answer(void) {
-  refusals++;
-  const bool again = patient ? hal_time_cycles() - since < PATIENCE_CYCLES : refusals < TRIES;
+  self.refusals++;
+  const bool again = self.patient ? hal_time_cycles() - self.since < PATIENCE_CYCLES : self.refusals < TRIES;
   if (again) {
-    begin(stage);
-  } else if (patient) {
-    patient = false;
-    refusals = TRIES - 1u;
-    begin(stage);
+    begin(self.stage);
+  } else if (self.patient) {
+    self.patient = false;
+    self.refusals = TRIES - 1u;
+    begin(self.stage);
   } else {
     end(NVM_FAILED, NVM_NO_ANSWER);
   }
 }
 
 static void on_stuck(void) {
-  if (clearings < TRIES) {
+  if (self.clearings < TRIES) {
     clear_bus();
   } else {
     end(NVM_FAILED, NVM_BUS_HUNG);
@@ -139,14 +141,14 @@ static void step_clearing(void) {
 }
 
 hal_nvm_state_t hal_nvm_step(void) {
-  if (state != NVM_BUSY) return state;
-  if (stage == STAGE_CLEAR) {
+  if (self.state != NVM_BUSY) return (hal_nvm_state_t)self.state;
+  if (self.stage == STAGE_CLEAR) {
     step_clearing();
-    return state;
+    return (hal_nvm_state_t)self.state;
   }
-  if (!begun) {
+  if (!self.begun) {
     try_to_begin();
-    return state;
+    return (hal_nvm_state_t)self.state;
   }
   switch (i2c_step()) {
     case I2C_DONE:
@@ -161,7 +163,7 @@ hal_nvm_state_t hal_nvm_step(void) {
     default:
       break;
   }
-  return state;
+  return (hal_nvm_state_t)self.state;
 }
 
-hal_nvm_fault_t hal_nvm_fault(void) { return fault; }
+hal_nvm_fault_t hal_nvm_fault(void) { return (hal_nvm_fault_t)self.fault; }

@@ -25,16 +25,17 @@
 #define MODE_STOP ((uint16_t)(MODE_ON | I2C_MDR_STP_MASK | I2C_MDR_MST_MASK))
 
 // NONE: before the first transfer.
-typedef enum { PHASE_NONE, PHASE_ADDRESS, PHASE_SEND, PHASE_RECEIVE, PHASE_ABORT } phase_t;
+enum { PHASE_NONE, PHASE_ADDRESS, PHASE_SEND, PHASE_RECEIVE, PHASE_ABORT };
 
-static i2c_transfer_t job;
-static phase_t phase;
-static uint16_t moved;     // octets of the job that went through the FIFO
-static uint32_t moved_at;  // cycles of the last progress
-static uint16_t level_seen;
-
-static uint16_t clear_edge;
-static uint32_t clear_at;
+static struct {
+  uint32_t moved_at;  // cycles of the last progress
+  uint32_t clear_at;
+  uint16_t phase;
+  uint16_t moved;  // octets of the job that went through the FIFO
+  uint16_t level_seen;
+  uint16_t clear_edge;
+  i2c_transfer_t job;
+} self;
 
 static void write_register(uint16_t offset, uint16_t value) { target_write16(I2C_BASE + offset, value); }
 static uint16_t read_register(uint16_t offset) { return target_read16(I2C_BASE + offset); }
@@ -71,25 +72,25 @@ bool i2c_lines_free(void) { return gpio_read(BOARD_PIN_SDA) && gpio_read(BOARD_P
 // ---- transfers
 // -------------------------------------------------------------------------------------------------------
 
-static void note_progress(void) { moved_at = hal_time_cycles(); }
+static void note_progress(void) { self.moved_at = hal_time_cycles(); }
 
 void i2c_begin(const i2c_transfer_t* transfer) {
-  job = *transfer;
-  moved = 0;
-  level_seen = 0;
+  self.job = *transfer;
+  self.moved = 0;
+  self.level_seen = 0;
   note_progress();
   empty_fifos();
   write_register(I2C_STR, 0xFFFFu);  // what the last transfer has left
-  write_register(I2C_SAR, job.device);
-  write_register(I2C_DXR, (uint16_t)(job.address >> 8));
-  write_register(I2C_DXR, (uint16_t)(job.address & 0xFFu));
-  if (job.read != NULL) {
-    phase = PHASE_ADDRESS;
+  write_register(I2C_SAR, self.job.device);
+  write_register(I2C_DXR, (uint16_t)(self.job.address >> 8));
+  write_register(I2C_DXR, (uint16_t)(self.job.address & 0xFFu));
+  if (self.job.read != NULL) {
+    self.phase = PHASE_ADDRESS;
     write_register(I2C_CNT, ADDRESS_OCTETS);
     write_register(I2C_MDR, MODE_START | I2C_MDR_TRX_MASK);
   } else {
-    phase = PHASE_SEND;
-    write_register(I2C_CNT, (uint16_t)(ADDRESS_OCTETS + job.count));
+    self.phase = PHASE_SEND;
+    write_register(I2C_CNT, (uint16_t)(ADDRESS_OCTETS + self.job.count));
     write_register(I2C_MDR, MODE_START | I2C_MDR_TRX_MASK | I2C_MDR_STP_MASK);
   }
 }
@@ -98,7 +99,7 @@ static bool has_stopped(void) { return (read_register(I2C_MDR) & I2C_MDR_MST_MAS
 
 // The module waits behind an octet that nobody acknowledged, unless it was told to stop anyway.
 static void abort_transfer(void) {
-  phase = PHASE_ABORT;
+  self.phase = PHASE_ABORT;
   write_register(I2C_STR, I2C_STR_NACK_MASK);
   empty_fifos();
   note_progress();
@@ -107,43 +108,43 @@ static void abort_transfer(void) {
 
 static void fill(void) {
   uint16_t level = REG_GET_FIELD(I2C_BASE + I2C_FFTX, I2C_FFTX_TXFFST);
-  if (level != level_seen) note_progress();
-  while (level < FIFO_DEPTH && moved < job.count) {
-    write_register(I2C_DXR, job.write[moved]);
-    moved++;
+  if (level != self.level_seen) note_progress();
+  while (level < FIFO_DEPTH && self.moved < self.job.count) {
+    write_register(I2C_DXR, self.job.write[self.moved]);
+    self.moved++;
     level++;
   }
-  level_seen = level;
+  self.level_seen = level;
 }
 
 static void drain(void) {
   uint16_t level = REG_GET_FIELD(I2C_BASE + I2C_FFRX, I2C_FFRX_RXFFST);
   if (level > 0u) note_progress();
-  for (; level > 0u && moved < job.count; level--) {
-    job.read[moved] = read_register(I2C_DRR);
-    moved++;
+  for (; level > 0u && self.moved < self.job.count; level--) {
+    self.job.read[self.moved] = read_register(I2C_DRR);
+    self.moved++;
   }
 }
 
 static void begin_reception(void) {
-  phase = PHASE_RECEIVE;
+  self.phase = PHASE_RECEIVE;
   note_progress();
-  write_register(I2C_CNT, job.count);
+  write_register(I2C_CNT, self.job.count);
   write_register(I2C_MDR, MODE_START | I2C_MDR_STP_MASK);
 }
 
 // True when the transfer's work is done.
 static bool advance(uint16_t status) {
-  switch (phase) {
+  switch (self.phase) {
     case PHASE_ADDRESS:
       if ((status & I2C_STR_ARDY_MASK) != 0u) begin_reception();
       return false;
     case PHASE_SEND:
       fill();
-      return moved == job.count && has_stopped();
+      return self.moved == self.job.count && has_stopped();
     case PHASE_RECEIVE:
       drain();
-      return moved == job.count && has_stopped();
+      return self.moved == self.job.count && has_stopped();
     default:
       return has_stopped();
   }
@@ -156,9 +157,9 @@ i2c_result_t i2c_step(void) {
     abort_transfer();
     return I2C_BUSY;
   }
-  const bool aborted = phase == PHASE_ABORT;
+  const bool aborted = self.phase == PHASE_ABORT;
   if (advance(status)) return aborted ? I2C_NO_ANSWER : I2C_DONE;
-  return (hal_time_cycles() - moved_at > STANDSTILL_CYCLES) ? I2C_STUCK : I2C_BUSY;
+  return (hal_time_cycles() - self.moved_at > STANDSTILL_CYCLES) ? I2C_STUCK : I2C_BUSY;
 }
 
 // ---- clearing the bus
@@ -168,8 +169,8 @@ void i2c_begin_clear(void) {
   write_register(I2C_MDR, 0u);
   gpio_make_open_drain(BOARD_PIN_SDA);
   gpio_make_open_drain(BOARD_PIN_SCL);
-  clear_edge = 0;
-  clear_at = hal_time_cycles();
+  self.clear_edge = 0;
+  self.clear_at = hal_time_cycles();
 }
 
 static i2c_result_t end_clear(i2c_result_t result) {
@@ -182,13 +183,13 @@ static i2c_result_t end_clear(i2c_result_t result) {
 // Clocks until the device has let SDA go: it takes the high SDA for a missing acknowledge. Then a stop, which is a rise
 // of SDA while SCL is high. Edges 0, 2, .. pull SCL low, 1, 3, .. let it go.
 i2c_result_t i2c_clear_step(void) {
-  if (hal_time_cycles() - clear_at < HALF_CLOCK_CYCLES) return I2C_BUSY;
-  clear_at = hal_time_cycles();
-  const uint16_t edge = clear_edge++;
+  if (hal_time_cycles() - self.clear_at < HALF_CLOCK_CYCLES) return I2C_BUSY;
+  self.clear_at = hal_time_cycles();
+  const uint16_t edge = self.clear_edge++;
   if (edge < 2u * CLEAR_CLOCKS) {
     const bool high = (edge & 1u) != 0u;
     gpio_pull_low(BOARD_PIN_SCL, !high);
-    if (high && gpio_read(BOARD_PIN_SDA)) clear_edge = 2u * CLEAR_CLOCKS;
+    if (high && gpio_read(BOARD_PIN_SDA)) self.clear_edge = 2u * CLEAR_CLOCKS;
     return I2C_BUSY;
   }
   switch (edge - 2u * CLEAR_CLOCKS) {

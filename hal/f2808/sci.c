@@ -25,12 +25,14 @@ typedef struct {
 
 static volatile bool ready = false;
 static bool broken = false;  // after a break, until the port has been reset
-static ring_t receive_ring, transmit_ring;
-static uint16_t received[HAL_SCI_RECEIVE_RING];
-static uint16_t to_send[HAL_SCI_TRANSMIT_RING];
-static hal_sci_errors_t errors;
-static volatile uint16_t break_at;  // in the receive ring: what lies before it came before the last break
-static uint16_t breaks_taken;
+static struct {
+  uint16_t breaks_taken;
+  volatile uint16_t break_at;  // in the receive ring: what lies before it came before the last break
+  ring_t receive_ring, transmit_ring;
+  hal_sci_errors_t errors;
+  uint16_t received[HAL_SCI_RECEIVE_RING];
+  uint16_t to_send[HAL_SCI_TRANSMIT_RING];
+} self;
 
 static uint16_t fill(const ring_t* ring) { return (uint16_t)(ring->in - ring->out); }
 
@@ -58,10 +60,10 @@ static void connect_pins(void) {
 }
 
 static void forget(void) {
-  receive_ring.in = receive_ring.out = 0u;
-  transmit_ring.in = transmit_ring.out = 0u;
-  errors = (hal_sci_errors_t){0u, 0u, 0u, 0u};
-  breaks_taken = 0u;
+  self.receive_ring.in = self.receive_ring.out = 0u;
+  self.transmit_ring.in = self.transmit_ring.out = 0u;
+  self.errors = (hal_sci_errors_t){0u, 0u, 0u, 0u};
+  self.breaks_taken = 0u;
   broken = false;
 }
 
@@ -90,12 +92,12 @@ bool hal_sci_init(uint32_t baud) {
 
 static void keep(uint16_t word) {
   if ((word & SCI_RXBUF_SCIFFFE_MASK) != 0u) {
-    count(&errors.framing);
-  } else if (fill(&receive_ring) >= HAL_SCI_RECEIVE_RING) {
-    count(&errors.lost);
+    count(&self.errors.framing);
+  } else if (fill(&self.receive_ring) >= HAL_SCI_RECEIVE_RING) {
+    count(&self.errors.lost);
   } else {
-    received[receive_ring.in % HAL_SCI_RECEIVE_RING] = (uint16_t)(word & SCI_RXBUF_RXDT_MASK);
-    receive_ring.in++;
+    self.received[self.receive_ring.in % HAL_SCI_RECEIVE_RING] = (uint16_t)(word & SCI_RXBUF_RXDT_MASK);
+    self.receive_ring.in++;
   }
 }
 
@@ -105,7 +107,7 @@ static void receive(void) {
   if (waiting > OCTETS_PER_PERIOD) waiting = OCTETS_PER_PERIOD;
   for (uint16_t k = 0u; k < waiting; k++) keep(target_read16(SCI + SCI_RXBUF));
   if ((fifo & SCI_FFRX_RXFFOVF_MASK) != 0u) {
-    count(&errors.overrun);
+    count(&self.errors.overrun);
     target_write16(SCI + SCI_FFRX, (uint16_t)(FIFO_RECEIVE_RUNS | SCI_FFRX_RXFFOVRCLR_MASK));
   }
 }
@@ -117,8 +119,8 @@ static bool may_send_on(void) {
   if (!broken) {
     if (!reg_any(SCI + SCI_RXST, SCI_RXST_BRKDT_MASK)) return true;
     broken = true;
-    break_at = receive_ring.in;
-    errors.breaks++;
+    self.break_at = self.receive_ring.in;
+    self.errors.breaks++;
   }
   if (!gpio_read(BOARD_PIN_SERIAL_IN)) return true;
   if (!reg_any(SCI + SCI_CTL2, SCI_CTL2_TXEMPTY_MASK)) return false;
@@ -129,15 +131,15 @@ static bool may_send_on(void) {
 }
 
 static void transmit(void) {
-  uint16_t waiting = fill(&transmit_ring);
+  uint16_t waiting = fill(&self.transmit_ring);
   if (waiting == 0u) return;
   const uint16_t used = REG_GET_FIELD(SCI + SCI_FFTX, SCI_FFTX_TXFFST);
   const uint16_t free_words = (uint16_t)(FIFO_DEPTH - used);
   if (waiting > OCTETS_PER_PERIOD) waiting = OCTETS_PER_PERIOD;
   if (waiting > free_words) waiting = free_words;
   for (uint16_t k = 0u; k < waiting; k++) {
-    target_write16(SCI + SCI_TXBUF, to_send[transmit_ring.out % HAL_SCI_TRANSMIT_RING]);
-    transmit_ring.out++;
+    target_write16(SCI + SCI_TXBUF, self.to_send[self.transmit_ring.out % HAL_SCI_TRANSMIT_RING]);
+    self.transmit_ring.out++;
   }
 }
 
@@ -151,32 +153,32 @@ void hal_sci_service(void) {
 
 uint16_t hal_sci_read(uint16_t* octets, uint16_t room) {
   uint16_t taken = 0u;
-  while (taken < room && fill(&receive_ring) > 0u) {
-    octets[taken++] = received[receive_ring.out % HAL_SCI_RECEIVE_RING];
-    receive_ring.out++;
+  while (taken < room && fill(&self.receive_ring) > 0u) {
+    octets[taken++] = self.received[self.receive_ring.out % HAL_SCI_RECEIVE_RING];
+    self.receive_ring.out++;
   }
   return taken;
 }
 
 // What has been read beyond it was read before its break was counted.
 bool hal_sci_take_break(void) {
-  const uint16_t breaks = errors.breaks;
-  if (breaks == breaks_taken) return false;
-  breaks_taken = breaks;
-  const uint16_t at = break_at;
-  if ((uint16_t)(at - receive_ring.out) <= HAL_SCI_RECEIVE_RING) receive_ring.out = at;
+  const uint16_t breaks = self.errors.breaks;
+  if (breaks == self.breaks_taken) return false;
+  self.breaks_taken = breaks;
+  const uint16_t at = self.break_at;
+  if ((uint16_t)(at - self.receive_ring.out) <= HAL_SCI_RECEIVE_RING) self.receive_ring.out = at;
   return true;
 }
 
-uint16_t hal_sci_room(void) { return (uint16_t)(HAL_SCI_TRANSMIT_RING - fill(&transmit_ring)); }
+uint16_t hal_sci_room(void) { return (uint16_t)(HAL_SCI_TRANSMIT_RING - fill(&self.transmit_ring)); }
 
 uint16_t hal_sci_write(const uint16_t* octets, uint16_t count_of) {
   uint16_t put = 0u;
   while (put < count_of && hal_sci_room() > 0u) {
-    to_send[transmit_ring.in % HAL_SCI_TRANSMIT_RING] = (uint16_t)(octets[put++] & 0xFFu);
-    transmit_ring.in++;
+    self.to_send[self.transmit_ring.in % HAL_SCI_TRANSMIT_RING] = (uint16_t)(octets[put++] & 0xFFu);
+    self.transmit_ring.in++;
   }
   return put;
 }
 
-hal_sci_errors_t hal_sci_errors(void) { return errors; }
+hal_sci_errors_t hal_sci_errors(void) { return self.errors; }
