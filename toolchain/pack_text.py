@@ -15,6 +15,8 @@ from row_lists import TREE, Lists
 NUMBERS = "firmware/text/text_numbers.h"
 # The lists, the macro, which of its arguments is the text, and what its number is called, by the arguments.
 LISTS = (
+    ("phrase_list.h", "PHRASE", 1, "SAY_{0}"),  # first, with numbers of eight bits: each stands in code
+    ("unit_list.h", "UNIT", 1, "TEXT_UNIT_{0}"),
     ("parameter_list.h", "PARAMETER", 9, "TEXT_PARAMETER_{1}"),
     ("signal_list.h", "SIGNAL", 5, "TEXT_SIGNAL_{0}"),
     ("catalogue_list.h", "WORDS", 2, "TEXT_{0}_{1}"),
@@ -22,8 +24,6 @@ LISTS = (
     ("fault_list.h", "FAULT", 3, "TEXT_REMEDY_{0}"),
     ("command_list.h", "COMMAND", 2, "TEXT_COMMAND_{0}"),
     ("help_list.h", "HELP", 2, "TEXT_HELP_{0}_{1}"),
-    ("phrase_list.h", "PHRASE", 1, "SAY_{0}"),
-    ("unit_list.h", "UNIT", 1, "TEXT_UNIT_{0}"),
     ("command_list.h", "COMMAND", 1, "TEXT_COMMAND_ARGUMENTS_{0}"),
     ("parameter_list.h", "PARAMETER", 1, "TEXT_PARAMETER_NAME_{1}"),
     ("signal_list.h", "SIGNAL", 0, "TEXT_SIGNAL_NAME_{0}"),

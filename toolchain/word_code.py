@@ -16,7 +16,7 @@ from itertools import count, pairwise
 END = ""  # of a text, and of a word, in the place of an entry or of a letter
 SPELLED = "\1"  # in the place of an entry: a word's letters follow
 WORD = re.compile(r"[A-Za-z0-9]+|.")
-LETTER_BITS = 4.5  # of a letter of the dictionary, about
+LETTER_BITS = 4.0  # of a letter of the dictionary, about
 LONGEST = 16  # bits of a code, as firmware/text/packed_text.c takes them
 WORTH = 4  # bits that an entry of several words has to save
 
