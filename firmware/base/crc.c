@@ -1,16 +1,17 @@
 #include "firmware/base/crc.h"
 
+#define POLYNOMIAL16 0x1021uL
+
 // What the four bits that leave the register put back into it.
-static const uint16_t table16[16] = {0x0000u, 0x1021u, 0x2042u, 0x3063u, 0x4084u, 0x50A5u, 0x60C6u, 0x70E7u,
-                                     0x8108u, 0x9129u, 0xA14Au, 0xB16Bu, 0xC18Cu, 0xD1ADu, 0xE1CEu, 0xF1EFu};
 static const uint32_t table32[16] = {0x00000000uL, 0x1DB71064uL, 0x3B6E20C8uL, 0x26D930ACuL, 0x76DC4190uL, 0x6B6B51F4uL,
                                      0x4DB26158uL, 0x5005713CuL, 0xEDB88320uL, 0xF00F9344uL, 0xD6D6A3E8uL, 0xCB61B38CuL,
                                      0x9B64C2B0uL, 0x86D3D2D4uL, 0xA00AE278uL, 0xBDBDF21CuL};
 
 uint16_t crc16_add(uint16_t crc, uint16_t octet) {
   uint32_t sum = crc;  // wide enough for what is shifted out
-  sum = (sum << 4) ^ table16[((sum >> 12) ^ (octet >> 4)) & 15u];
-  sum = (sum << 4) ^ table16[((sum >> 12) ^ octet) & 15u];
+  // Four bits times this polynomial, whose ones are far enough apart for a product without carries.
+  sum = (sum << 4) ^ (((sum >> 12) ^ (octet >> 4)) & 15u) * POLYNOMIAL16;
+  sum = (sum << 4) ^ (((sum >> 12) ^ octet) & 15u) * POLYNOMIAL16;
   return (uint16_t)(sum & 0xFFFFu);
 }
 

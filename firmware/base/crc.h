@@ -4,7 +4,7 @@
 // of the link. CRC-32 of IEEE 802.3 (polynomial 0x04C11DB7 reflected, begins with all ones and is inverted at the end,
 // "123456789" gives 0xCBF43926) closes a slot of the store and names the drive's tables.
 //
-// Both go by half octets: tables of 16 words, about 20 cycles an octet.
+// Both go by half octets, about 20 cycles an octet; CRC-32 has a table of 16 numbers.
 
 #ifndef STILLSPIN_FIRMWARE_BASE_CRC_H
 #define STILLSPIN_FIRMWARE_BASE_CRC_H
