@@ -42,6 +42,7 @@ TABLES = {
     "watch": Table("watch_t", SERVICE, "one"),
     "status_updates": Table("service_t", STATUS),
     "requests": Table("const request_row_t", "firmware/link/request_rows.h", arrays=True, asked_by="link"),
+    "suggest": Table("suggest_t", "firmware/console/names.h", "one", asked_by="console"),
     "commands": Table("command_function_t", "firmware/console/commands.h", "places", asked_by="console"),
     "status_lines": Table("const status_line_t", STATUS, asked_by="console"),
     "text_port": Table("const text_port_t", "firmware/interfaces/text_port.h", "one", asked_by="link"),

@@ -95,7 +95,7 @@ PARTS = {
     ),
     "firmware/console": Part(
         (
-            *("firmware/console/*.c", "firmware/text/*.c", "firmware/dictionary/*.c"),
+            *("firmware/console/**/*.c", "firmware/text/*.c", "firmware/dictionary/*.c"),
             *("firmware/base/clear.c", "firmware/base/edition.c"),
         ),
         FIRMWARE,

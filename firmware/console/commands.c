@@ -2,8 +2,8 @@
 
 #include "firmware/base/edition.h"
 #include "firmware/console/job.h"
+#include "firmware/console/names.h"
 #include "firmware/console/output.h"
-#include "firmware/console/suggest.h"
 #include "firmware/dictionary/version.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"
@@ -14,7 +14,7 @@ void command_obey(const editor_line_t* line, bool expired) {
   if (name.count == 0u) return;
   const uint16_t command = command_find(&name);
   if (!command_is_here(command)) {
-    suggest(SUGGEST_COMMAND, &name);
+    refuse_name(NAME_COMMAND, &name);
     return;
   }
   words_of_line_t a;
@@ -86,7 +86,7 @@ void command_help(const words_of_line_t* a) {
     explained = command;
     console_run(explain, false);
   } else {
-    suggest(SUGGEST_COMMAND, &a->word[0]);
+    refuse_name(NAME_COMMAND, &a->word[0]);
   }
 }
 

@@ -5,9 +5,9 @@
 #include "firmware/api/actions.h"
 #include "firmware/console/commands.h"
 #include "firmware/console/job.h"
+#include "firmware/console/names.h"
 #include "firmware/console/output.h"
 #include "firmware/console/signal_text.h"
-#include "firmware/console/suggest.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"
@@ -69,7 +69,7 @@ static bool describe(uint16_t step) {
 
 void command_get(const words_of_line_t* a) {
   if (a->count != 1u) {
-    line_refused(SAY_get_name_one_parameter_or_signal_list);
+    line_refused(SAY_get_name_one_parameter_or_signal);
     return;
   }
   described = parameter_named(a->word[0].text, a->word[0].count);
@@ -79,7 +79,7 @@ void command_get(const words_of_line_t* a) {
   }
   const uint16_t place = signal_find(&a->word[0]);
   if (place == SIGNAL_NONE) {
-    suggest(SUGGEST_PARAMETER, &a->word[0]);
+    refuse_name(NAME_PARAMETER, &a->word[0]);
     return;
   }
   put_signal_row(line_begin(), place);
@@ -119,7 +119,7 @@ void command_set(const words_of_line_t* a) {
   }
   const parameter_info_t* const p = parameter_named(a->word[0].text, a->word[0].count);
   if (p == NULL) {
-    suggest(SUGGEST_PARAMETER, &a->word[0]);
+    refuse_name(NAME_PARAMETER, &a->word[0]);
     return;
   }
   word_t typed = words_from(a, 1);

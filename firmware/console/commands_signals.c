@@ -4,10 +4,10 @@
 
 #include "firmware/console/commands.h"
 #include "firmware/console/job.h"
+#include "firmware/console/names.h"
 #include "firmware/console/output.h"
 #include "firmware/console/signal_text.h"
 #include "firmware/console/status_text.h"
-#include "firmware/console/suggest.h"
 #include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 #include "firmware/text/packed_text.h"
@@ -15,24 +15,26 @@
 #define WATCH_MS 500u
 #define WATCH_SIGNALS 4u
 
-static uint16_t watched[WATCH_SIGNALS];
-static uint16_t watched_count;
-static uint32_t shown_ms;
+static struct {
+  uint32_t shown_ms;
+  uint16_t watched_count;
+  uint16_t watched[WATCH_SIGNALS];
+} self;
 
 static void put_watched(octet_writer_t* w) {
-  for (uint16_t k = 0; k < watched_count; k++) {
+  for (uint16_t k = 0; k < self.watched_count; k++) {
     if (k > 0u) put_packed(w, SAY_gap);
-    put_packed(w, signal_info(watched[k])->name);
+    put_packed(w, signal_info(self.watched[k])->name);
     put_u8(w, ' ');
-    put_signal(w, watched[k]);
+    put_signal(w, self.watched[k]);
   }
 }
 
 static bool watch(uint16_t step) {
-  if (step > 0u && drive_time_ms() - shown_ms < WATCH_MS) return true;
-  shown_ms = drive_time_ms();
+  if (step > 0u && drive_time_ms() - self.shown_ms < WATCH_MS) return true;
+  self.shown_ms = drive_time_ms();
   octet_writer_t* const w = line_begin();
-  if (watched_count > 0u) {
+  if (self.watched_count > 0u) {
     put_watched(w);
   } else {
     put_overview(w);
@@ -42,7 +44,7 @@ static bool watch(uint16_t step) {
 }
 
 void command_watch(const words_of_line_t* a) {
-  watched_count = 0;
+  self.watched_count = 0;
   if (a->count > WATCH_SIGNALS) {
     line_refused(SAY_watch_shows_at_most_four_signals);
     return;
@@ -50,12 +52,12 @@ void command_watch(const words_of_line_t* a) {
   for (uint16_t k = 0; k < a->count; k++) {
     const uint16_t place = signal_find(&a->word[k]);
     if (place == SIGNAL_NONE) {
-      suggest(SUGGEST_SIGNAL, &a->word[k]);
+      refuse_name(NAME_SIGNAL, &a->word[k]);
       return;
     }
-    watched[k] = place;
+    self.watched[k] = place;
   }
-  watched_count = a->count;
+  self.watched_count = a->count;
   console_run(watch, true);
 }
 

@@ -4,6 +4,7 @@
 
 #include "firmware/base/edition.h"
 #include "firmware/dictionary/units.h"
+#include "firmware/text/text.h"
 #include "hal/hal_board.h"
 #include "hal/qmath/qdiv.h"
 
@@ -68,8 +69,7 @@ uint16_t parameter_decimals(const parameter_info_t* p) { return unit_decimals(p-
 
 // So many steps; `step`: which.
 static int32_t raw_of(const parameter_info_t* p, int32_t count, int16_t step) {
-  static const int32_t tens[] = {1L, 10L, 100L, 1000L, 10000L, 100000L, 1000000L};
-  return q_div(count * steps[step & 7], tens[p->decimals], p->q);
+  return q_div(count * steps[step & 7], powers_of_ten[p->decimals], p->q);
 }
 
 static int32_t raw_of_word(const parameter_info_t* p, int16_t word) { return raw_of(p, q_shr(word, 3), word); }
@@ -122,12 +122,8 @@ static uint16_t row_by_id(uint16_t id) {
   return k;
 }
 
-static uint16_t row_by_name(const uint16_t* name, uint16_t count) {
-  return packed_find(FIRST(NAME_), COUNT, name, count);
-}
-
 const parameter_info_t* parameter_named(const uint16_t* name, uint16_t count) {
-  const uint16_t row = row_by_name(name, count);
+  const uint16_t row = packed_find(FIRST(NAME_), COUNT, name, count);
   return is_here(row) ? &table[row] : NULL;
 }
 
@@ -137,10 +133,6 @@ const parameter_info_t* parameter_by_id(uint16_t id) {
 }
 
 bool parameter_is_left_out(uint16_t id) { return rows_have(edition_parameters_left_out, row_by_id(id)); }
-
-bool parameter_name_is_left_out(const uint16_t* name, uint16_t count) {
-  return rows_have(edition_parameters_left_out, row_by_name(name, count));
-}
 
 void parameter_write(uint16_t id, int32_t raw) {
   const uint16_t k = row_by_id(id);

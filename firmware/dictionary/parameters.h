@@ -80,7 +80,6 @@ int32_t parameter_get(uint16_t id);
 
 /// Of a feature that this edition has not: it stays at its default.
 bool parameter_is_left_out(uint16_t id);
-bool parameter_name_is_left_out(const uint16_t* name, uint16_t count);
 
 /// Puts every parameter to its default.
 void parameters_reset(void);

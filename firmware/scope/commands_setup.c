@@ -2,9 +2,9 @@
 
 #include <stddef.h>
 
+#include "firmware/console/names.h"
 #include "firmware/console/output.h"
 #include "firmware/console/signal_text.h"
-#include "firmware/console/suggest.h"
 #include "firmware/drive/signals.h"
 #include "firmware/scope/scope.h"
 #include "firmware/scope/sub_commands.h"
@@ -14,15 +14,15 @@
 
 #define EDGES 6u
 
+#define REACH(unit, bits) (uint16_t)(UNIT_##unit | (bits) << 8)
+
 // Bits of a record's word before its point, by what the quantities of a drive reach: 32 A, 512 V, 8192 rpm.
 static uint16_t shift_of(const signal_info_t* s) {
-  static const struct {
-    uint16_t unit, whole;
-  } reach[] = {{UNIT_NONE, 7}, {UNIT_A, 5},  {UNIT_V, 9},       {UNIT_RPM, 13},
-               {UNIT_TURN, 0}, {UNIT_NM, 5}, {UNIT_A_PER_S, 18}};
+  static const uint16_t reach[] = {REACH(NONE, 7), REACH(A, 5),  REACH(V, 9),       REACH(RPM, 13),
+                                   REACH(TURN, 0), REACH(NM, 5), REACH(A_PER_S, 18)};
   uint16_t whole = 15;
   for (uint16_t k = 0; k < sizeof reach / sizeof reach[0]; k++) {
-    if (s->unit == reach[k].unit) whole = reach[k].whole;
+    if (s->unit == (reach[k] & 0xFFu)) whole = reach[k] >> 8;
   }
   return (uint16_t)(q_max16((int16_t)(s->q + whole), 15) - 15);
 }
@@ -30,7 +30,7 @@ static uint16_t shift_of(const signal_info_t* s) {
 // The signal's place; false, and said, when there is none.
 static bool read_signal(const word_t* typed, uint16_t* place) {
   *place = signal_find(typed);
-  if (*place == SIGNAL_NONE) suggest(SUGGEST_SIGNAL, typed);
+  if (*place == SIGNAL_NONE) refuse_name(NAME_SIGNAL, typed);
   return *place != SIGNAL_NONE;
 }
 

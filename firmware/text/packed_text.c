@@ -98,13 +98,6 @@ bool packed_is_empty(packed_text_t text) {
   return packed_next(&r) == 0u;
 }
 
-void packed_copy(packed_text_t text, char* string, uint16_t room) {
-  packed_reader_t r = packed_reader(text);
-  uint16_t k = 0;
-  for (uint16_t c = packed_next(&r); c != 0u && k + 1u < room; c = packed_next(&r)) string[k++] = (char)c;
-  string[k] = '\0';
-}
-
 // Whether the text goes on with these characters.
 static bool goes_on_with(packed_reader_t* r, const uint16_t* wanted, uint16_t count) {
   for (uint16_t k = 0; k < count; k++) {
@@ -114,9 +107,14 @@ static bool goes_on_with(packed_reader_t* r, const uint16_t* wanted, uint16_t co
   return true;
 }
 
-bool packed_equals(packed_text_t text, const uint16_t* wanted, uint16_t count) {
-  packed_reader_t r = packed_reader(text);
+bool packed_rest_is(const packed_reader_t* from, const uint16_t* wanted, uint16_t count) {
+  packed_reader_t r = *from;
   return goes_on_with(&r, wanted, count) && packed_next(&r) == 0u;
+}
+
+bool packed_equals(packed_text_t text, const uint16_t* wanted, uint16_t count) {
+  const packed_reader_t r = packed_reader(text);
+  return packed_rest_is(&r, wanted, count);
 }
 
 uint16_t packed_find(packed_text_t first, uint16_t texts, const uint16_t* wanted, uint16_t count) {

@@ -48,11 +48,8 @@ void put_count(octet_writer_t* w, uint32_t count, packed_text_t what);
 
 bool packed_is_empty(packed_text_t text);
 
-/// The text as a string; what is beyond `room` characters, its end among them, is left out. room > 0.
-void packed_copy(packed_text_t text, char* string, uint16_t room);
-
-/// True when the text is that string.
-bool packed_is(packed_text_t text, const char* string);
+/// True when from here to the text's end it is these characters and no more; capitals count as small letters.
+bool packed_rest_is(const packed_reader_t* from, const uint16_t* wanted, uint16_t count);
 
 /// True when the text is these characters and no more; capitals count as small letters.
 bool packed_equals(packed_text_t text, const uint16_t* wanted, uint16_t count);

@@ -5,7 +5,7 @@
 
 #define EXPONENT_ENOUGH 100u  // for everything else to be beyond all formats
 
-static const int32_t ten[] = {1L, 10L, 100L, 1000L, 10000L, 100000L, 1000000L, 10000000L, 100000000L, 1000000000L};
+const int32_t powers_of_ten[] = {1L, 10L, 100L, 1000L, 10000L, 100000L, 1000000L, 10000000L, 100000000L, 1000000000L};
 
 void put_digits(octet_writer_t* w, uint32_t value, uint16_t digits) {
   uint16_t reversed[10];
@@ -24,8 +24,8 @@ void put_fixed(octet_writer_t* w, int32_t raw, uint16_t q, uint16_t decimals) {
   uint32_t whole = (uint32_t)((uint64_t)magnitude >> q);
   const uint64_t rest = magnitude - ((uint64_t)whole << q);
   const uint64_t half = (q > 0u) ? (uint64_t)1 << (q - 1u) : 0u;
-  uint32_t fraction = (uint32_t)((rest * (uint32_t)ten[decimals] + half) >> q);
-  if (fraction >= (uint32_t)ten[decimals]) {
+  uint32_t fraction = (uint32_t)((rest * (uint32_t)powers_of_ten[decimals] + half) >> q);
+  if (fraction >= (uint32_t)powers_of_ten[decimals]) {
     fraction = 0;
     whole++;
   }
@@ -114,11 +114,11 @@ uint16_t text_number(const uint16_t* text, uint16_t count, decimal_t* number) {
   return (at < count && (text[at] == ',' || text[at] == '.')) ? 0u : at;
 }
 
-bool decimal_is_whole(const decimal_t* number) { return number->digits % ten[number->decimals] == 0; }
+bool decimal_is_whole(const decimal_t* number) { return number->digits % powers_of_ten[number->decimals] == 0; }
 
 bool decimal_raw(const decimal_t* number, uint16_t q, int32_t* raw) {
   const uint16_t beyond = (q > 31u) ? (uint16_t)(q - 31u) : 0u;
-  const int32_t one = ten[number->decimals];
+  const int32_t one = powers_of_ten[number->decimals];
   const int32_t most = INT32_MAX >> beyond;
   *raw = number->digits;
   if (*raw > most || *raw < -most) return false;
@@ -127,25 +127,3 @@ bool decimal_raw(const decimal_t* number, uint16_t q, int32_t* raw) {
 }
 
 uint16_t text_small(uint16_t c) { return (c >= 'A' && c <= 'Z') ? (uint16_t)(c + 32u) : c; }
-
-// How many characters of the beginning are the same.
-static uint16_t common(const char* string, const uint16_t* text, uint16_t count) {
-  uint16_t k = 0;
-  while (k < count && string[k] != '\0' && text_small((uint16_t)string[k]) == text_small(text[k])) k++;
-  return k;
-}
-
-bool text_begins(const char* string, const uint16_t* text, uint16_t count) {
-  return common(string, text, count) == count;
-}
-
-bool text_equals(const char* string, const uint16_t* text, uint16_t count) {
-  return common(string, text, count) == count && string[count] == '\0';
-}
-
-bool text_occurs(const char* string, const uint16_t* text, uint16_t count) {
-  for (; *string != '\0'; string++) {
-    if (text_begins(string, text, count)) return true;
-  }
-  return count == 0u;
-}

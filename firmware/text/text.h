@@ -28,6 +28,9 @@ void put_fixed(octet_writer_t* w, int32_t raw, uint16_t q, uint16_t decimals);
 /// Fills up with spaces to a column, counted from where the line began in the block.
 void put_spaces_to(octet_writer_t* w, uint16_t column);
 
+/// 10^k, k = 0..9.
+extern const int32_t powers_of_ten[];
+
 /// A number of decimal digits: digits / 10^decimals.
 typedef struct {
   int32_t digits;
@@ -47,15 +50,6 @@ bool decimal_raw(const decimal_t* number, uint16_t q, int32_t* raw);
 
 /// The small letter of a capital; any other character itself.
 uint16_t text_small(uint16_t c);
-
-/// True when the string's beginning is these characters; capitals count as small letters.
-bool text_begins(const char* string, const uint16_t* text, uint16_t count);
-
-/// True when the string is these characters and no more; capitals count as small letters.
-bool text_equals(const char* string, const uint16_t* text, uint16_t count);
-
-/// True when these characters occur in the string; capitals count as small letters.
-bool text_occurs(const char* string, const uint16_t* text, uint16_t count);
 
 #if defined(__cplusplus)
 }

@@ -59,7 +59,7 @@ TEST_F(ConsoleLines, HelpOfOneCommandIsAllThatIsSaidOfIt) {
   EXPECT_EQ(lines(command("help set")), 1 + 3);
   EXPECT_EQ(lines(command("help scope")), 1 + 7);
   EXPECT_EQ(lines(command("help can")), 1);
-  EXPECT_EQ(command("help cam"), "there is no command 'cam': did you mean can?\r\n");
+  EXPECT_EQ(command("help cam").rfind("there is no command 'cam': ", 0), 0u);
 }
 
 TEST_F(ConsoleLines, StatusInNumbers) {
@@ -238,6 +238,7 @@ TEST_F(ConsoleLines, WhatIsTypedAheadHasItsRoom) {
 }
 
 TEST_F(ConsoleLines, FourNamesAreSuggestedAtMost) {
+  NEEDS("console/suggest");
   const std::string said = command("get curren");
   EXPECT_EQ(std::count(said.begin(), said.end(), ','), 3) << said;
   EXPECT_EQ(said.rfind("there is no parameter 'curren': did you mean ", 0), 0u) << said;

@@ -10,7 +10,7 @@
 extern "C" {
 #include "firmware/console/commands.h"
 #include "firmware/console/output.h"
-#include "firmware/console/suggest.h"
+#include "firmware/console/suggest/suggest.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/reset.h"
 #include "firmware/mode/commands.h"
@@ -70,14 +70,19 @@ TEST_F(Console, WhatIsRefusedIsExplained) {
 }
 
 TEST_F(Console, DidYouMean) {
+  NEEDS("console/suggest");
   EXPECT_EQ(command("strat"), "there is no command 'strat': did you mean start?\r\n");
   EXPECT_EQ(command("get speed_lmit"), "there is no parameter 'speed_lmit': did you mean speed_limit?\r\n");
   EXPECT_EQ(command("get ldq"), "there is no parameter 'ldq': did you mean ldq_1, ldq_2, ldq_3, ldq_4?\r\n");
   EXPECT_EQ(command("watch sped"), "there is no signal 'sped': did you mean speed?\r\n");
+}
+
+TEST_F(Console, ANameThatThereIsNot) {
   EXPECT_EQ(command("xyzzy"), "there is no command 'xyzzy': see 'help'\r\n");
   EXPECT_EQ(command("?"), "there is no command '?': see 'help'\r\n");
   EXPECT_EQ(command("help me"), "there is no command 'me': see 'help'\r\n");
-  EXPECT_EQ(command("get xyzzy"), "there is no parameter 'xyzzy'\r\n");
+  EXPECT_EQ(command("get xyzzy"), "there is no parameter 'xyzzy': see 'list'\r\n");
+  EXPECT_EQ(command("watch xyzzy"), "there is no signal 'xyzzy': see 'signals'\r\n");
 }
 
 // A name that another edition has is no mistake to be put right.
@@ -95,18 +100,23 @@ TEST_F(Console, WhatTheEditionHasNotIsNamedWithIt) {
 }
 
 TEST(Suggest, OneEditOrAPart) {
-  const auto near = [](const char* name, const std::string& text) {
+  NEEDS("console/suggest");
+  const auto near = [](packed_text_t name, const std::string& text) {
     const Octets o(text.begin(), text.end());
     const word_t word = {o.data(), static_cast<std::uint16_t>(o.size())};
     return suggest_is_near(name, &word);
   };
   for (const char* s : {"stop", "sto", "stopp", "stpo", "stap", "tsop", "xstop", "top", "STOP"}) {
-    EXPECT_TRUE(near("stop", s)) << s;
+    EXPECT_TRUE(near(TEXT_COMMAND_NAME_stop, s)) << s;
   }
-  for (const char* s : {"", "s", "start", "spot", "xyz", "stpp0"}) EXPECT_FALSE(near("stop", s)) << s;
-  EXPECT_TRUE(near("speed_limit", "limit"));
-  EXPECT_TRUE(near("speed", "speed_limit"));
-  EXPECT_FALSE(near("x", "xyz") || near("x", "x")) << "one letter says nothing";
+  for (const char* s : {"", "s", "start", "spot", "xyz", "stpp0", "stopped", "sotp0"}) {
+    EXPECT_FALSE(near(TEXT_COMMAND_NAME_stop, s)) << s;
+  }
+  for (const char* s : {"limit", "SpeedLimit", "speed-limit", "speed_imit", "spede_limit", "speed_limit"}) {
+    EXPECT_TRUE(near(TEXT_PARAMETER_NAME_speed_limit, s)) << s;
+  }
+  EXPECT_TRUE(near(TEXT_SIGNAL_NAME_speed, "speed_limit"));
+  EXPECT_FALSE(near(TEXT_UNIT_V, "vyz") || near(TEXT_UNIT_V, "v")) << "one letter says nothing";
 }
 
 TEST_F(Console, List) {

@@ -10,7 +10,6 @@
 #include "tests/firmware/edition.hpp"
 
 extern "C" {
-#include "firmware/console/suggest.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
@@ -46,6 +45,7 @@ const Row kListed[] = {
 #include "firmware/console/all_commands.h"
 #include "firmware/console/all_help.h"
 #include "firmware/console/phrase_list.h"
+#include "firmware/console/suggest/phrase_list.h"
 #include "firmware/dictionary/all_faults.h"
 #include "firmware/dictionary/all_parameters.h"
 #include "firmware/dictionary/all_signals.h"
@@ -106,27 +106,6 @@ TEST(PackedText, EqualsItselfAlone) {
     EXPECT_FALSE(equals(row.number, row.text.substr(0, row.text.size() - 1)));
   }
   EXPECT_TRUE(equals(TEXT_UNIT_OHM, "OHM"));
-}
-
-TEST(PackedText, ACopyIsTheTextAsFarAsThereIsRoom) {
-  for (const Row& row : kRows) {
-    for (const std::uint16_t room : {1, 2, 8, 300}) {
-      std::string copy(room + 1u, '#');
-      packed_copy(row.number, copy.data(), room);
-      const std::size_t kept = std::min<std::size_t>(row.text.size(), room - 1u);
-      EXPECT_EQ(copy.substr(0, kept + 1), row.text.substr(0, kept) + '\0');
-      EXPECT_EQ(copy[room], '#');
-    }
-  }
-}
-
-TEST(PackedText, EveryNameHasRoomWhereNamesAreCompared) {
-  for (std::uint16_t k = 0; k < parameter_count(); ++k) {
-    EXPECT_LT(text_of(parameter_name(parameter_info(k))).size(), SUGGEST_NAME_ROOM);
-  }
-  for (std::uint16_t k = 0; k < signal_count(); ++k) {
-    EXPECT_LT(text_of(signal_info(k)->name).size(), SUGGEST_NAME_ROOM);
-  }
 }
 
 std::uint16_t place_of(packed_text_t first, std::uint16_t texts, const std::string& name) {

@@ -160,24 +160,4 @@ TEST(Text, WhatIsWrittenIsReadBack) {
   }
 }
 
-bool equals(const char* string, const std::string& text) {
-  const std::vector<std::uint16_t> o(text.begin(), text.end());
-  return text_equals(string, o.data(), static_cast<std::uint16_t>(o.size()));
-}
-
-bool occurs(const char* string, const std::string& text) {
-  const std::vector<std::uint16_t> o(text.begin(), text.end());
-  return text_occurs(string, o.data(), static_cast<std::uint16_t>(o.size()));
-}
-
-TEST(Text, Comparisons) {
-  EXPECT_TRUE(equals("rpm/s", "RPM/s"));
-  EXPECT_FALSE(equals("rpm/s", "rpm"));
-  EXPECT_FALSE(equals("rpm", "rpm/s"));
-  EXPECT_TRUE(equals("", ""));
-  EXPECT_TRUE(occurs("current_limit", "LIMIT"));
-  EXPECT_TRUE(occurs("current_limit", ""));
-  EXPECT_FALSE(occurs("current_limit", "limits"));
-}
-
 }  // namespace

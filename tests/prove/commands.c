@@ -9,7 +9,7 @@
 #include "firmware/can/node.h"
 #include "firmware/commissioning/commands.h"
 #include "firmware/console/console.h"
-#include "firmware/console/suggest.h"
+#include "firmware/console/suggest/suggest.h"
 #include "firmware/link/link.h"
 #include "firmware/scope/commands.h"
 #include "firmware/start/flying/commands.h"
@@ -22,6 +22,7 @@ command_function_t* const edition_commands[] = {
 #include "firmware/console/all_commands.h"
 };
 #undef COMMAND
+suggest_t* const edition_suggest = suggest_names;
 const status_line_t* const edition_status_lines[] = {&state_line,    &speed_line, &current_line,    &dc_link_line,
                                                      &limits_line,   &fault_line, &parameters_line, &board_line,
                                                      &selftest_line, &store_line, &serial_line,     0};
@@ -86,7 +87,7 @@ static void one_command(uint16_t command) {
 // What is looked for among the names is set before anything looks: a word of nobody would stand beside that.
 static void look_for_something(void) {
   const words_of_line_t a = any_words();
-  suggest(SUGGEST_COMMAND, &a.word[0]);
+  suggest_names(NAME_COMMAND, &a.word[0]);
 }
 
 void prove_commands(void) {

@@ -6,7 +6,7 @@
 
 #include "firmware/can/segments.h"
 #include "firmware/console/commands.h"
-#include "firmware/console/suggest.h"
+#include "firmware/console/suggest/suggest.h"
 #include "firmware/dictionary/units.h"
 #include "firmware/link/splitter.h"
 #include "firmware/text/catalogue.h"
@@ -39,21 +39,6 @@ int16_t splitter_rest(splitter_t* s, uint32_t now_ms);
    == 1 ==> j->count <= 243; */
 bool segment_join(segment_joiner_t* j, const hal_can_frame_t* frame, uint32_t now_ms);
 
-/*@ requires \valid_read(string) && (count == 0 || \valid_read(text + (0 .. count - 1)));
-    assigns \result \from string[0], text[0 .. 79], count;
-    ensures \result == 0 || \result == 1; */
-bool text_begins(const char* string, const uint16_t* text, uint16_t count);
-
-/*@ requires \valid_read(string) && (count == 0 || \valid_read(text + (0 .. count - 1)));
-    assigns \result \from string[0], text[0 .. 79], count;
-    ensures \result == 0 || \result == 1; */
-bool text_equals(const char* string, const uint16_t* text, uint16_t count);
-
-/*@ requires \valid_read(string) && (count == 0 || \valid_read(text + (0 .. count - 1)));
-    assigns \result \from string[0], text[0 .. 79], count;
-    ensures \result == 0 || \result == 1; */
-bool text_occurs(const char* string, const uint16_t* text, uint16_t count);
-
 /*@ requires text < PACKED_TEXTS; assigns \result \from text; */
 packed_reader_t packed_reader(packed_text_t text);
 
@@ -72,10 +57,6 @@ bool packed_occurs(packed_text_t text, const uint16_t* wanted, uint16_t count);
 
 /*@ requires text < PACKED_TEXTS; assigns \result \from text; ensures \result == 0 || \result == 1; */
 bool packed_is_empty(packed_text_t text);
-
-/*@ requires text < PACKED_TEXTS && room > 0 && \valid(string + (0 .. room - 1));
-    assigns string[0 .. room - 1] \from text; */
-void packed_copy(packed_text_t text, char* string, uint16_t room);
 
 /*@ requires text < PACKED_TEXTS && (count == 0 || \valid_read(wanted + (0 .. count - 1)));
     assigns \result \from text, wanted[0 .. 79], count; ensures \result == 0 || \result == 1; */
@@ -126,9 +107,9 @@ bool decimal_raw(const decimal_t* number, uint16_t q, int32_t* raw);
     assigns \result \from *number; ensures \result == 0 || \result == 1; */
 bool decimal_is_whole(const decimal_t* number);
 
-/*@ requires \valid_read(name) && \valid_read(word) && word->count <= 80;
-    assigns \result \from name[0], word->count; ensures \result == 0 || \result == 1; */
-bool suggest_is_near(const char* name, const word_t* word);
+/*@ requires name < PACKED_TEXTS && \valid_read(word) && word->count <= 80;
+    assigns \result \from name, word->count; ensures \result == 0 || \result == 1; */
+bool suggest_is_near(packed_text_t name, const word_t* word);
 
 /*@ requires \valid(e) && \valid(echo) && e->line.count <= 80;
     assigns *e, \result \from *e, octet;

@@ -3,7 +3,7 @@
 
 #include "firmware/text/text.h"
 
-#include "firmware/console/suggest.h"
+#include "firmware/console/suggest/suggest.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
@@ -26,52 +26,28 @@ static void any_word(void) {
 
 // Whatever was typed, compared with one text.
 static void compare_packed(packed_text_t text) {
-  char room[SUGGEST_NAME_ROOM];
   octet_writer_t w = writer();
   put_packed(&w, text);
-  packed_copy(text, room, SUGGEST_NAME_ROOM);
   word.count = (uint16_t)any_from(0, (int32_t)EDITOR_LINE);
   (void)packed_equals(text, word.text, word.count);
   (void)packed_occurs(text, word.text, word.count);
-}
-
-static char room[SUGGEST_NAME_ROOM];
-
-// Any name of so many characters, at the end of its room: what is read behind it lies outside.
-static const char* any_name(uint16_t count) {
-  char* const name = &room[SUGGEST_NAME_ROOM - 1u - count];
-  for (uint16_t k = 0; k < count; k++) name[k] = (char)any_from(1, 127);
-  name[count] = '\0';
-  return name;
-}
-
-static void compare(const char* name) {
-  word.count = (uint16_t)any_from(0, (int32_t)EDITOR_LINE);
-  (void)text_begins(name, word.text, word.count);
-  (void)text_equals(name, word.text, word.count);
-  (void)text_occurs(name, word.text, word.count);
 }
 
 void prove_names(void) {
   any_word();
   for (uint16_t k = 0; k < parameter_count(); k++) compare_packed(parameter_name(parameter_info(k)));
   for (uint16_t k = 0; k < signal_count(); k++) compare_packed(signal_info(k)->name);
-  for (uint16_t n = 0; n < SUGGEST_NAME_ROOM; n++) compare(any_name(n));
 }
 
-// The same with one character wrong, missing or too many.
-static void come_near(uint16_t n) {
-  const char* const name = any_name(n);
-  word.count = (uint16_t)any_from(0, n - 2);
-  (void)suggest_is_near(name, &word);
-  for (word.count = n - 1u; word.count <= n + 1u; word.count++) (void)suggest_is_near(name, &word);
-  word.count = (uint16_t)any_from(n + 2, (int32_t)EDITOR_LINE);
+static void come_near(packed_text_t name) {
+  word.count = (uint16_t)any_from(0, (int32_t)EDITOR_LINE);
   (void)suggest_is_near(name, &word);
 }
 
 void prove_near(void) {
   any_word();
-  for (uint16_t n = 2; n < SUGGEST_NAME_ROOM; n++) come_near(n);
+  for (uint16_t k = 0; k < parameter_count(); k++) come_near(parameter_name(parameter_info(k)));
+  for (uint16_t k = 0; k < signal_count(); k++) come_near(signal_info(k)->name);
 }
 
 static void one_format(uint16_t q, uint16_t decimals) {

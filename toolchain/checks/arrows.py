@@ -35,6 +35,7 @@ FIRMWARE = (
         "store",
         "scope",
         "hil",
+        "console/suggest",
         "start/flying",
         "start/if_start",
         "sources/flux",

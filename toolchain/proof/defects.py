@@ -152,10 +152,8 @@ DEFECTS = (
     Defect("commissioning", "take_off", "estimators/fit.c", "rest[FIT_POINTS]", "rest[FIT_POINTS - 1u]"),
     Defect("packed", "next_code", "firmware/text/packed_text.c", "if (entry == SPELLED) skip_word(at);", ""),
     Defect("numbers", "put_digits", "firmware/text/text.c", "reversed[10]", "reversed[9]"),
-    Defect("names", "common", "firmware/text/text.c", "k < count && string[k] != '\\0' &&", "k < count &&"),
-    Defect(
-        "near", "is_one_edit_away", "firmware/console/suggest.c", "&name[k + 1u], rest, l", "&name[k + 2u], rest, l"
-    ),
+    Defect("names", "goes_on_with", "firmware/text/packed_text.c", "k < count; k++) {", "k <= count; k++) {"),
+    Defect("near", "suggest_is_near", "firmware/console/suggest/suggest.c", "if (left > 1u &&", "if (left > 0u &&"),
     Defect("editor", "insert", "firmware/console/editor.c", "l->count >= EDITOR_LINE", "l->count > EDITOR_LINE"),
     Defect("commands", "scope_set_channels", "firmware/scope/commands_setup.c", "a->count > 1u +", "a->count > 2u +"),
     Defect("requests", "scope_read", "firmware/scope/requests.c", "count > READ_MAX", "count > 2u * READ_MAX"),

@@ -19,12 +19,11 @@ OF_QMATH += ",q_follow,q_follow_near,q_follow_halves,q_follow_remainder,q_gather
 OF_LAYOUTS = "svpwm_alternating_fits,svpwm_alternating,svpwm_extended,svpwm_cheapest_pair,svpwm_centred,svpwm_long_zero"
 OF_DROPS = "dead_time_drop_q16"
 OF_BLOCKS = "crc16,cobs_encode,cobs_decode"
-OF_NAMES = "text_begins,text_equals,text_occurs"
 OF_WRITING = (
     "put_text,put_unsigned,put_fixed,put_spaces_to,put_message,put_packed,packed_is_empty,packed_reader,packed_next"
 )
 OF_DECIMALS = "text_number,decimal_raw,decimal_is_whole"
-OF_TYPING = f"{OF_NAMES},{OF_DECIMALS},packed_occurs,packed_find,packed_equals,packed_copy,suggest_is_near"
+OF_TYPING = f"{OF_DECIMALS},packed_occurs,packed_find,packed_equals,suggest_is_near"
 OF_LINES = "editor_octet,editor_next,editor_show"
 OF_RECORDS = "splitter_octet,splitter_rest,record_to_wire"
 OF_FRAMES = "segment_join,segment_split_begin,segment_split_peek,segment_split_advance"
@@ -80,7 +79,7 @@ TEXTS = (
     ),
     *(OCTETS, "hal/qmath/qcall.c", "hal/qmath/qdiv.c", "hal/qmath/qquotient.c"),
 )
-TYPED = ("tests/prove/text.c", "firmware/console/suggest.c", *TEXTS)
+TYPED = ("tests/prove/text.c", "firmware/console/suggest/suggest.c", *TEXTS)
 BESIDE = (
     *("tests/prove/any_drive.c", "firmware/api/actions.c", "firmware/mode/fault_history.c", "firmware/scope/scope.c"),
     *(
@@ -152,7 +151,7 @@ NUMBERS = (
 )
 NAMES = (
     *("-eva-min-loop-unroll", "200", "-eva-slevel", "4", "-eva-split-return", "auto"),
-    *("-eva-slevel-function", "is_one_edit_away:60"),
+    *("-eva-slevel-function", "suggest_is_near:60"),
 )
 ROUNDS = ("-eva-auto-loop-unroll", "40", "-eva-slevel", "20", "-eva-split-return", "full")
 
@@ -241,7 +240,7 @@ PARTS = (
     of_link("packed", TYPED, ("-eva-min-loop-unroll", "1200", "-eva-no-results")),
     of_link("numbers", TYPED, NUMBERS, OF_QMATH, "put_packed"),
     of_link("names", TYPED, NAMES, OF_QMATH),
-    of_link("near", TYPED, NAMES, OF_QMATH, OF_NAMES),
+    of_link("near", TYPED, NAMES, OF_QMATH, "packed_occurs"),
     of_link(
         "editor",
         ("tests/prove/editor.c", "firmware/console/editor.c", OCTETS, "hal/qmath/qdiv.c"),
@@ -252,7 +251,7 @@ PARTS = (
         "commands",
         (
             *("tests/prove/commands.c", *TERMINAL, *BESIDE),
-            *(f"firmware/console/{name}.c" for name in ("command*", "words_of_line", "s*")),
+            *(f"firmware/console/{name}.c" for name in ("command*", "names", "words_of_line", "s*", "suggest/suggest")),
             *(f"firmware/{folder}/commands.c" for folder in ("can", "scope", "start/flying", "store", "commissioning")),
             *("firmware/link/status.c", "firmware/scope/commands_*.c"),
         ),

@@ -1,28 +1,22 @@
 // For a name that does not exist: which ones were probably meant.
 
-#ifndef STILLSPIN_FIRMWARE_CONSOLE_SUGGEST_H
-#define STILLSPIN_FIRMWARE_CONSOLE_SUGGEST_H
+#ifndef STILLSPIN_FIRMWARE_CONSOLE_SUGGEST_SUGGEST_H
+#define STILLSPIN_FIRMWARE_CONSOLE_SUGGEST_SUGGEST_H
 
 #include <stdbool.h>
-#include <stdint.h>
 
-#include "firmware/console/words_of_line.h"
+#include "firmware/console/names.h"
 
 #if defined(__cplusplus)
 extern "C" {
 #endif
 
-#define SUGGEST_NAME_ROOM 32u  // characters of the longest name and its end, at least
-
-/// What has names.
-typedef enum { SUGGEST_COMMAND, SUGGEST_PARAMETER, SUGGEST_SIGNAL } suggest_kind_t;
-
 /// Begins the job that says: there is no <kind> '<word>', did you mean ..; names are looked through a few at a time.
-void suggest(suggest_kind_t kind, const word_t* word);
+void suggest_names(name_kind_t kind, const word_t* word);
 
 /// True when the two differ by one character that is missing, too many or wrong, or by two exchanged ones, or when the
 /// name contains or begins the word.
-bool suggest_is_near(const char* name, const word_t* word);
+bool suggest_is_near(packed_text_t name, const word_t* word);
 
 #if defined(__cplusplus)
 }
