@@ -10,8 +10,8 @@
 #define SHORTEST_PART 2u
 
 static struct {
-  name_kind_t kind;
   word_t wanted;
+  uint16_t kind;  // name_kind_t
   packed_text_t near[MOST];
   uint16_t found;
 } self;
@@ -43,10 +43,10 @@ bool suggest_is_near(packed_text_t name, const word_t* word) {
 
 static void say(void) {
   if (self.found == 0u) {
-    say_no_such_name(self.kind, &self.wanted);
+    say_no_such_name((name_kind_t)self.kind, &self.wanted);
     return;
   }
-  octet_writer_t* const w = put_no_such_name(self.kind, &self.wanted);
+  octet_writer_t* const w = put_no_such_name((name_kind_t)self.kind, &self.wanted);
   for (uint16_t k = 0; k < self.found; k++) {
     put_packed(w, (k == 0u) ? SAY_did_you_mean : SAY_comma);
     put_packed(w, self.near[k]);
@@ -58,7 +58,7 @@ static void say(void) {
 static bool look(uint16_t step) {
   packed_text_t name = (packed_text_t)(first_names[self.kind] + step * NAMES_A_STEP);
   for (uint16_t k = 0; k < NAMES_A_STEP; k++, name++) {
-    if (name == first_names[self.kind + 1] || self.found == MOST) {
+    if (name == first_names[self.kind + 1u] || self.found == MOST) {
       say();
       return false;
     }
@@ -68,7 +68,7 @@ static bool look(uint16_t step) {
 }
 
 void suggest_names(name_kind_t kind, const word_t* word) {
-  self.kind = kind;
+  self.kind = (uint16_t)kind;
   self.wanted = *word;
   self.found = 0;
   console_run(look, false);
