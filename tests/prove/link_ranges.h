@@ -45,6 +45,10 @@ packed_reader_t packed_reader(packed_text_t text);
 /*@ requires \valid(r); assigns *r, \result \from *r; */
 uint16_t packed_next(packed_reader_t* r);
 
+/*@ requires \valid_read(from) && (count == 0 || \valid_read(wanted + (0 .. count - 1)));
+    assigns \result \from *from, wanted[0 .. 79], count; ensures \result == 0 || \result == 1; */
+bool packed_rest_is(const packed_reader_t* from, const uint16_t* wanted, uint16_t count);
+
 /*@ requires \valid(w) && text < PACKED_TEXTS;
     assigns w->octets[0 .. w->room - 1], w->count, w->full \from w->count, w->room, text;
     ensures w->count <= w->room; ensures w->full == 0 || w->full == 1; */

@@ -39,15 +39,11 @@ void prove_names(void) {
   for (uint16_t k = 0; k < signal_count(); k++) compare_packed(signal_info(k)->name);
 }
 
-static void come_near(packed_text_t name) {
-  word.count = (uint16_t)any_from(0, (int32_t)EDITOR_LINE);
-  (void)suggest_is_near(name, &word);
-}
-
 void prove_near(void) {
   any_word();
-  for (uint16_t k = 0; k < parameter_count(); k++) come_near(parameter_name(parameter_info(k)));
-  for (uint16_t k = 0; k < signal_count(); k++) come_near(signal_info(k)->name);
+  for (word.count = 0; word.count <= EDITOR_LINE; word.count++) {
+    (void)suggest_is_near((packed_text_t)any_from(0, (int32_t)PACKED_TEXTS - 1), &word);
+  }
 }
 
 static void one_format(uint16_t q, uint16_t decimals) {

@@ -151,7 +151,7 @@ NUMBERS = (
 )
 NAMES = (
     *("-eva-min-loop-unroll", "200", "-eva-slevel", "4", "-eva-split-return", "auto"),
-    *("-eva-slevel-function", "suggest_is_near:60"),
+    *("-eva-slevel-function", "suggest_is_near:400"),
 )
 ROUNDS = ("-eva-auto-loop-unroll", "40", "-eva-slevel", "20", "-eva-split-return", "full")
 
@@ -240,7 +240,7 @@ PARTS = (
     of_link("packed", TYPED, ("-eva-min-loop-unroll", "1200", "-eva-no-results")),
     of_link("numbers", TYPED, NUMBERS, OF_QMATH, "put_packed"),
     of_link("names", TYPED, NAMES, OF_QMATH),
-    of_link("near", TYPED, NAMES, OF_QMATH, "packed_occurs"),
+    of_link("near", TYPED, NAMES, OF_QMATH, "packed_occurs,packed_reader,packed_next,packed_rest_is"),
     of_link(
         "editor",
         ("tests/prove/editor.c", "firmware/console/editor.c", OCTETS, "hal/qmath/qdiv.c"),
