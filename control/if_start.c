@@ -79,7 +79,7 @@ static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
   s->rotor_bpp = qc_follow(s->rotor_bpp, seen, c->filter_shift);
   s->mean_bpp = qc_follow(s->mean_bpp, s->rotor_bpp, MEAN_SHIFT);
   const int32_t fast = qc_sub_sat(s->rotor_bpp, s->mean_bpp);
-  const int32_t shift = q_clamp(q_sat64((int64_t)fast * c->damping_periods), -SHIFT_MAX_BAM, SHIFT_MAX_BAM);
+  const int32_t shift = q_clamp(qc_mul_sat(fast, 2 * c->damping_periods, 1), -SHIFT_MAX_BAM, SHIFT_MAX_BAM);
   s->angle_bam = s->vector_bam - (uint32_t)shift;
 }
 

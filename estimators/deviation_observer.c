@@ -2,6 +2,7 @@
 
 #include "estimators/deviation_covariance.h"
 #include "estimators/deviation_information.h"
+#include "hal/qmath/qcall.h"
 
 #define ONE_Q20 1048576L
 #define BAM_PER_UNIT_Q7 1367130551L  // 2^-6 rad
@@ -27,8 +28,8 @@
 // N m in 10 ms -> variance per period: acceleration in own units is accel (bpp per N m) / 2607.6; a random walk reaches
 // its 10 ms value in 100 periods.
 static int32_t load_variance_q20(const machine_model_t* m, int32_t load_rate_q20) {
-  const int32_t units_q12 = q_mul_sat(q_mul_sat(m->accel_q12, load_rate_q20, 20), 6587625L, 34);
-  return q_clamp(q_mul_sat(units_q12, units_q12, 4) / 100, 1, DEVIATION_VARIANCE_MAX / 8);
+  const int32_t units_q12 = qc_mul_sat(qc_mul_sat(m->accel_q12, load_rate_q20, 20), 6587625L, 34);
+  return q_clamp(qc_mul_sat(units_q12, units_q12, 4) / 100, 1, DEVIATION_VARIANCE_MAX / 8);
 }
 
 void deviation_observer_design(deviation_observer_config_t* c, const machine_model_t* m,
@@ -192,7 +193,7 @@ static information_t look(deviation_observer_t* s, const deviation_observer_conf
 // covariances with the angle. Where the angle is not known, as with zero vectors at rest, there is no wave to be seen.
 void deviation_observer_learn(deviation_observer_t* s, const deviation_observer_config_t* c) {
   if (!deviation_observer_is_sure(s)) return;
-  const int32_t lag_q20 = q_min(q_over(q_abs_sat(s->p_as), q_invert(q_abs_sat(s->p_al)), 20), LAG_MAX_Q20);
+  const int32_t lag_q20 = q_min(qc_over(q_abs_sat(s->p_as), q_invert(q_abs_sat(s->p_al)), 20), LAG_MAX_Q20);
   const uint32_t turned_bam = (uint32_t)q_mul_sat(s->speed_bpp, lag_q20, 14);  // a unit of time is 64 periods
   const cogging_seen_t seen = {s->angle_bam - turned_bam, s->speed_bpp, s->load_accel_q8};
   const int32_t taken_q8 = cogging_learn(&s->cogging, &c->cogging, &seen);

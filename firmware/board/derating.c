@@ -82,6 +82,6 @@ drive_fault_t board_follow_heat(void) {
     const drive_fault_t overload = follow_overload(ever_q20, &share_q15);
     if (fault == FAULT_NONE) fault = overload;
   }
-  board.share_q15 = share_q15;
+  board.share_q15 = (uint16_t)share_q15;
   return fault;
 }

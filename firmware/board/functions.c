@@ -10,6 +10,7 @@
 #include "firmware/text/text.h"
 #include "hal/hal_digital_io.h"
 #include "hal/hal_irq.h"
+#include "hal/qmath/qcall.h"
 
 #define POWERED_SHARE 8  // a DC link below an eighth of the threshold is not being charged
 #define SILENT_MAX 20u   // ms: the gate enable's own time and some
@@ -79,7 +80,7 @@ static void brake(void) {
 static drive_fault_t watch_brake(void) {
   if (parameters.brake_voltage == 0) return FAULT_NONE;
   board.brake_mean_q30 += q_shr((board.braking ? BRAKE_ONE : 0) - board.brake_mean_q30, BRAKE_SHIFT);
-  const int32_t most_q30 = q_mul(parameters.brake_share, 10737418L, 16);
+  const int32_t most_q30 = qc_mul(parameters.brake_share, 10737418L, 16);
   return board.brake_mean_q30 > most_q30 ? FAULT_BRAKE_RESISTOR : FAULT_NONE;
 }
 

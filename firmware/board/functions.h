@@ -44,7 +44,6 @@ typedef struct {
   uint16_t charging_ms;    // the DC link has been on its way for so long
   uint16_t silent_ms;      // the gates should pass and have not for so long
   int32_t brake_mean_q30;  // share of the last seconds in which the brake resistor was on
-  int32_t share_q15;       // of current_limit, left by heat sink and overload
   int32_t heat_sink_q8;    // degrees C
   int32_t heat_q24;        // mean square of the current, of that which may flow for ever
   uint16_t code;           // of the speed command
@@ -55,6 +54,7 @@ typedef struct {
   uint32_t stall_from_bam;  // from here
   int32_t stall_back_bpp;   // and turned so fast against the reference
   bool stall_slows;         // which gets less
+  uint16_t share_q15;       // of current_limit, left by heat sink and overload
 } board_t;
 
 extern board_t board;

@@ -10,6 +10,7 @@
 #include "hal/hal_digital_io.h"
 #include "hal/hal_selftest.h"
 #include "hal/hal_time.h"
+#include "hal/qmath/qcall.h"
 
 #define PAIRS_A_PASS 16u  // divides HAL_SELFTEST_PAIRS
 #define SERVICES 100u
@@ -45,7 +46,7 @@ void selftest_count(uint32_t cycles) {
   selftest.cycles += cycles;
   if (selftest.services < SERVICES) return;
   const int32_t expected = (int32_t)(selftest.cycles / HAL_SELFTEST_WATCHDOG_CYCLES) - (int32_t)(SERVICES / 2u);
-  judge(q_abs_sat((int32_t)selftest.counts - expected) <= expected / 8, SELFTEST_CLOCK);
+  judge(qc_abs_sat((int32_t)selftest.counts - expected) <= expected / 8, SELFTEST_CLOCK);
 }
 
 static void march(void) {
@@ -60,7 +61,7 @@ drive_fault_t selftest_service(void) {
   flash_sum_service(&selftest.flash);
   judge(selftest.flash.state != FLASH_SUM_WRONG, SELFTEST_FLASH);
   if (feature_status.loading) return FAULT_NONE;  // what is wired is not known yet
-  const int32_t off = q_abs_sat((int32_t)selftest.reference - BOARD_REFERENCE_CODE);
+  const int32_t off = qc_abs_sat((int32_t)selftest.reference - BOARD_REFERENCE_CODE);
   judge(parameters.reference_input == 0 || (off < REFERENCE_OFF && selftest.ground < (uint16_t)REFERENCE_OFF),
         SELFTEST_CONVERTER);
   judge(parameters.gate_feedback == 0 || !selftest.passed_early, SELFTEST_GATE_ENABLE);

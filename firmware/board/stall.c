@@ -25,10 +25,10 @@ static int32_t back_bpp(const drive_t* d) {
   return q_max((d->control.ramp.value > 0) ? qc_sub_sat(0, speed_bpp) : speed_bpp, 0);
 }
 
-static void begin_anew(const drive_t* d, bool slows) {
+static void begin_anew(const drive_t* d, int32_t now_bpp, bool slows) {
   board.stalled_ms = 0;
   board.stall_from_bam = d->position.selected.angle_bam;
-  board.stall_back_bpp = back_bpp(d);
+  board.stall_back_bpp = now_bpp;
   board.stall_slows = slows;
 }
 
@@ -37,16 +37,15 @@ static bool has_speed_reference(const drive_t* d) {
 }
 
 // By a sixteenth at least: of its largest speed since it began, and once it slows down, of its speed at the last time.
-static bool is_slowing(const drive_t* d) {
-  const int32_t now_bpp = back_bpp(d);
+static bool is_slowing(int32_t now_bpp) {
   if (!board.stall_slows) board.stall_back_bpp = q_max(board.stall_back_bpp, now_bpp);
   return board.stall_back_bpp - now_bpp > board.stall_back_bpp / 16 + SLOWER_BPP;
 }
 
 // Half of the reference's way in stall_time.
 static int32_t least_way_bam(const drive_t* d) {
-  const int32_t half_periods = parameters.stall_time * (DRIVE_PERIODS_PER_MS / 2);
-  return q_clamp(q_sat64(q_product(qc_abs_sat(d->control.ramp.value), half_periods)), LEAST_BAM, MOST_BAM);
+  const int32_t way = qc_mul_sat(qc_abs_sat(d->control.ramp.value), parameters.stall_time * DRIVE_PERIODS_PER_MS, 1);
+  return q_clamp(way, LEAST_BAM, MOST_BAM);
 }
 
 // The way in the direction of the reference; one that is pushed back counts from where it has been pushed to.
@@ -59,11 +58,10 @@ static int32_t way_bam(const drive_t* d) {
 
 drive_fault_t board_follow_shaft(void) {
   const drive_t* const d = &drive;
-  if (!has_speed_reference(d) || way_bam(d) > least_way_bam(d)) {
-    begin_anew(d, false);
-  } else if (is_slowing(d)) {
-    begin_anew(d, true);
-  }
+  const int32_t now_bpp = back_bpp(d);
+  const bool gets_on = !has_speed_reference(d) || way_bam(d) > least_way_bam(d);
+  const bool slows = !gets_on && is_slowing(now_bpp);
+  if (gets_on || slows) begin_anew(d, now_bpp, slows);
   if ((d->limits & LIMIT_CURRENT) == 0) {
     board.stalled_ms -= (board.stalled_ms < RELIEF_MS) ? board.stalled_ms : RELIEF_MS;
     return FAULT_NONE;

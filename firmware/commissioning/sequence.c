@@ -9,6 +9,7 @@
 #include "firmware/start/start.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_replay.h"
+#include "hal/qmath/qcall.h"
 
 #define LONGER_TICKS 500
 #define SAMPLING_MIN_TICKS 450  // two bursts and the shortest useful time between them
@@ -84,7 +85,7 @@ static void commissioning_step(drive_t* d) {
     return;
   }
   const bool done = phases[c->phase].step(d);
-  c->tick = q_add_sat(c->tick, 1);
+  c->tick = qc_add_sat(c->tick, 1);
   if (done) next_phase(d);
 }
 

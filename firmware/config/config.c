@@ -18,8 +18,8 @@
 #define EDGE_BAND_Q20 524288L         // half an ampere of ripple may be predicted wrong
 #define RAD_PER_RPM_Q47 1473799531L   // 2 pi / 60 * 100 us
 #define TURNS_Q32_PER_RAD 683565276L  // 2^32 / 2 pi
-#define EIGHT_THIRDS_Q29 1431655765L  // 8/3
-#define MILLIHENRY_Q30 1099511628L    // mH (Q20) to H (Q30): 1.024
+#define ONE_Q24 16777216L
+#define MILLIHENRY_Q30 1099511628L  // mH (Q20) to H (Q30): 1.024
 
 // Ticks of 10 ns from a time in us, Q16.
 static int16_t ticks(int32_t time_q16) { return (int16_t)qc_mul(time_q16, 100, 16); }
@@ -125,38 +125,21 @@ static void load_modulation(drive_config_t* c) {
   dead_time_design(&c->dead_time);
 }
 
-// (yp - yq)/(yp + yq) of two inverse inductances, Q30.
-static int32_t saliency_q30(int32_t yp_q30, int32_t yq_q30) {
-  return q_div(yp_q30 / 2 - yq_q30 / 2, yp_q30 / 2 + yq_q30 / 2, 30);
-}
-
-// EMF over the link's voltage at which a rotor is found with all of the current, Q30, where a map ends because the
-// saliency does. A window's slope changes per radian by y 2 s 2/3 U with the saliency s at a link U, and by y E with an
-// EMF E. The observer weighs it by what its model, the map's end, has of both; the machine beyond may have a saliency
-// s' of the other sign, which pulls the angle away: (4/3 U)^2 s s' against E^2, and E has twice of what balances it,
-// for an s' of up to four times. s' is not measured: 1/Lqq is taken to rise on with the square of the current.
-static int32_t freed_share_q30(const machine_map_t* map) {
+// How many times the speed up to which the saliency tells as much as the EMF has to be reached for all of the current,
+// Q8. A window's slope changes per radian by (Yd - Yq) 2/3 U at a link U, and by Yq E with an EMF E. The observer
+// weighs it by what its model has of both, the map's end; the machine beyond may have an Lqq below Ldd, whose share
+// pulls the angle away. They balance where E = 2/3 U sqrt((l - 1)(1 - l')) with l = Lqq/Ldd there and l' at
+// current_limit, and E is twice that, for a 1 - l' of up to four times. l' is not measured: 1/Lqq is taken to rise on
+// with the square of the current.
+static int16_t freed_by_q8(const machine_map_t* map, int32_t sixth_q30) {
   const machine_point_t* const end = &map->points[MACHINE_MAP_SEGMENTS];
+  const int32_t yqq0_q30 = map->points[0].yqq_q30;
   const int32_t reach_q12 = q_div(parameters.current_limit, parameters.map_current, 12);
-  const int32_t gained_q30 = qc_mul_sat(end->yqq_q30 - map->points[0].yqq_q30, qc_mul_sat(reach_q12, reach_q12, 16), 8);
-  const int32_t turned_q30 = saliency_q30(q_max(qc_add_sat(map->points[0].yqq_q30, gained_q30), 0), end->ydd_q30);
-  const int64_t square_q60 = q_product(saliency_q30(end->ydd_q30, end->yqq_q30), q_max(turned_q30, 0));
-  return qc_mul_sat((int32_t)q_sqrt64((uint64_t)square_q60), EIGHT_THIRDS_Q29, 29);
-}
-
-// Speed at which the EMF is a share of the link's voltage, for a volt of it.
-static int32_t bpp_per_volt_q4(const drive_config_t* c, int32_t share_q30) {
-  return qc_mul_sat(q_div(share_q30, c->nameplate.emf_q16, 20), TURNS_Q32_PER_RAD, 30);
-}
-
-static void load_saliency(drive_config_t* c) {
-  const parameters_t* const p = &parameters;
-  // A sixth of the saliency: at saliency_current at least an eighth is left, and both weigh the same.
-  const int32_t sixth_q30 = q_div((p->inductance_q - p->inductance_d) / 6, p->inductance_q + p->inductance_d, 30);
-  c->salient_bpp_q4 = bpp_per_volt_q4(c, sixth_q30);
-  c->freed_bpp_q4 = bpp_per_volt_q4(c, freed_share_q30(&c->nameplate.map));
-  c->salient_q20 = p->saliency_current;
-  if (p->saliency_current == 0 || drive_source_selected_has(SOURCE_MEASURES)) c->salient_q20 = INT32_MAX;
+  const int32_t gained_q30 = qc_mul_sat(end->yqq_q30 - yqq0_q30, qc_mul_sat(reach_q12, reach_q12, 16), 8);
+  const int32_t above_q24 = q_div(end->ydd_q30, end->yqq_q30, 24) - ONE_Q24;
+  const int32_t below_q24 = q_max(ONE_Q24 - q_div(end->ydd_q30, qc_add_sat(yqq0_q30, gained_q30), 24), 0);
+  const int32_t root_q24 = (int32_t)q_sqrt64((uint64_t)q_product(above_q24, below_q24));
+  return (int16_t)(q_clamp(q_div(root_q24, sixth_q30, 14), 384, 24575) / 3 * 4);
 }
 
 static bool load_control(drive_config_t* c) {
@@ -171,7 +154,12 @@ static bool load_control(drive_config_t* c) {
   // B (Q24, N m s) * rpm per bpp (Q40) * 2 pi / 60.
   c->friction_per_bpp_q40 = qc_mul_sat(qc_mul_sat(p->friction, c->rpm_per_bpp_q40, 24), 112442659L, 30);
   c->ramp_step_bpp = qc_mul_sat(p->speed_ramp, c->bpp_per_rpm_q8, 16) / 1000;
-  load_saliency(c);
+  // A sixth of the saliency (Lq - Ld)/(Lq + Ld), over the flux: at saliency_current at least an eighth of it is left.
+  const int32_t sixth_q30 = q_div((p->inductance_q - p->inductance_d) / 6, p->inductance_q + p->inductance_d, 30);
+  c->salient_bpp_q4 = qc_mul_sat(q_div(sixth_q30, c->nameplate.emf_q16, 20), TURNS_Q32_PER_RAD, 30);
+  c->freed_by_q8 = freed_by_q8(&c->nameplate.map, sixth_q30);
+  c->salient_q20 = p->saliency_current;
+  if (p->saliency_current == 0 || drive_source_selected_has(SOURCE_MEASURES)) c->salient_q20 = INT32_MAX;
   c->hold_gain_q30 = q_div(p->position_hold, c->nameplate.periods_per_second, 22);
   c->hold_below_bpp = qc_mul_sat(HOLD_BELOW_RPM_Q16, c->bpp_per_rpm_q8, 24);
   const current_design_t current = {p->current_bandwidth, DRIVE_PERIOD_US, p->current_divider,

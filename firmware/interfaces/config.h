@@ -41,11 +41,11 @@ typedef struct drive_config {
   int32_t ramp_step_bpp;         // change of the speed reference per millisecond, 0 for a jump
   int32_t salient_q20;           // most current while the rotor is found by its saliency
   int32_t salient_bpp_q4;        // up to that speed, for a volt of the link
-  int32_t freed_bpp_q4;          // and from that one on all of it
   int32_t hold_gain_q30;         // of the position hold, per period
   int32_t hold_below_bpp;        // slower than this counts as at rest
   int32_t sensor_mismatch_q30;   // of the current sensors, as a share
   bool mapped;                   // the turn of the saliency axis with the current is known
+  int16_t freed_by_q8;           // of salient_bpp_q4: from that speed on all of the current, 2 or more
   saturation_slopes_t saturation;
   config_values_t values;
 } drive_config_t;

@@ -5,7 +5,7 @@
 #include "firmware/mode/mode.h"
 #include "hal/hal_digital_io.h"
 #include "hal/hal_irq.h"
-#include "hal/qmath/qmath.h"
+#include "hal/qmath/qcall.h"
 
 int32_t interlock_share_q15;
 
@@ -15,7 +15,7 @@ int32_t interlock_current_limit(void) {
     least_q15 = q_min(least_q15, edition_current_shares[k]());
   }
   interlock_share_q15 = least_q15;
-  return q_mul(drive.config.values.current_limit, least_q15, 15);
+  return qc_mul(drive.config.values.current_limit, least_q15, 15);
 }
 
 bool interlock_is_warm(void) { return interlock_share_q15 < INTERLOCK_SHARE_ONE; }

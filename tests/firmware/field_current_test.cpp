@@ -173,7 +173,7 @@ TEST_F(SpeedTask, ARotorThatIsFoundByItsSaliencyKeepsIt) {
 }
 
 // Where the map ends with the saliency, and a fall of Lqq that goes on turns its sign at the limit, the current is all
-// there at twice the EMF that balances both: (4/3 link)^2 s s'.
+// there at twice the EMF that balances it.
 TEST_F(SpeedTask, ASaliencyThatTurnsItsSignIsOutweighedFirst) {
   const double l_d = real(parameters.inductance_d, 20), l_q = real(parameters.inductance_q, 20);
   const double flux = real(parameters.magnet_flux, 28);
@@ -189,8 +189,8 @@ TEST_F(SpeedTask, ASaliencyThatTurnsItsSignIsOutweighedFirst) {
     ASSERT_TRUE(drive_config_load(&inside::config()));
     inside::current_limit_q20() = raw(12.0, 20);
     const double beyond = l_q / (1.0 + (1.0 / last - 1.0) * 4.0);
-    const double s = (last * l_q - l_d) / (last * l_q + l_d), turned = std::max(0.0, (l_d - beyond) / (l_d + beyond));
-    const double freed = std::max(2.0 * even, 8.0 / 3.0 * kLink * std::sqrt(s * turned) / flux);
+    const double above = last * l_q / l_d - 1.0, below = std::max(0.0, 1.0 - beyond / l_d);
+    const double freed = std::max(2.0 * even, 4.0 / 3.0 * kLink * std::sqrt(above * below) / flux);
     EXPECT_EQ(freed > 2.0 * even, last < 0.9) << "else this shows nothing";
     for (const auto& [at, room] : {std::pair{0.99 * even, 6.0},
                                    {-(0.75 * even + 0.25 * freed), 7.5},

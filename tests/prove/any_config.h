@@ -30,7 +30,7 @@ static inline void any_control(drive_config_t* c) {
   c->hold_below_bpp = any_from(0, SPEED_MAX_BPP / 4);
   c->salient_q20 = any_from(0, INT32_MAX);
   c->salient_bpp_q4 = any_i32;
-  c->freed_bpp_q4 = any_i32;
+  c->freed_by_q8 = (int16_t)any_from(512, 32767);
 }
 
 static inline void any_position(drive_config_t* c) {

@@ -146,10 +146,9 @@ def test_where_the_saliency_ends_the_load_is_what_the_drive_gives_there():
     assert told(ROUND).load_at(0.0) == rated.torque
     (slow,) = [duty for duty in duties.duties(rated) if (duty.kind, duty.of) == (LOAD, "0 %")]
     assert (slow.load, slow.run.load[1][1]) == pytest.approx((0.4, 1.2))
-    # A map that ends at 4.5 mH: by 13.5 A they are 2.5 mH, and the saliencies balance at 7.6 times the speed.
+    # A map that ends at 4.5 mH: by 13.5 A they are 2.5 mH, and the EMF balances that at 7.8 times the speed.
     ended = told(ROUND, saliency_current=5.0, map_current=5.0, lqq_4=90.0, current_limit=15.0)
-    turned = (4.0 - 2.5) / (4.0 + 2.5)
-    assert ended.freed == pytest.approx(16.0 * 9.0 * even * math.sqrt(0.5 / 8.5 * turned))
+    assert ended.freed == pytest.approx(4.0 / 3.0 * 54.0 * even * math.sqrt((4.5 / 4.0 - 1.0) * (1.0 - 2.5 / 4.0)))
 
 
 @pytest.mark.parametrize(("motor", "of"), [("vehicle_35kw", "-5 %"), ("vehicle_35kw", "+5 %"), ("servo_48v", "-100 %")])

@@ -86,21 +86,20 @@ def of(motor: Described, *, mapped: bool = False) -> Ratings:
         slow_torque=1.5 * pairs * flux * (salient or most),
         most_torque=1.5 * pairs * flux * most,
         even=even * per_share,
-        freed=max(2.0 * even, 8.0 / 3.0 * _wrong(motor)) * per_share if 0.0 < salient < most else 0.0,
+        freed=2.0 * max(even, _balance(motor)) * per_share if 0.0 < salient < most else 0.0,
     )
 
 
-def _wrong(motor: Described) -> float:
-    """Geometric mean of the saliency where the map ends and of that of the other sign at the limit, by the drive's law.
+def _balance(motor: Described) -> float:
+    """EMF over the link at which it balances the saliency of the other sign at the limit, by the drive's law.
 
-    1/Lqq rises with the square of the current.
+    1/Lqq rises on with the square of the current.
     """
     d, q = (motor.told(f"inductance_{axis}") * motor.told(f"l{axis}{axis}_4") / 100.0 for axis in "dq")
     reach = motor.told("current_limit") / motor.told("map_current")
-    beyond = 1.0 / motor.told("inductance_q")
-    beyond += (1.0 / q - beyond) * reach**2
-    turned = share(1.0 / beyond, d)
-    return math.sqrt(share(d, q) * turned) if turned > 0.0 else 0.0
+    first = 1.0 / motor.told("inductance_q")
+    beyond = 1.0 / (first + (1.0 / q - first) * reach**2)
+    return 2.0 / 3.0 * math.sqrt((q / d - 1.0) * max(1.0 - beyond / d, 0.0))
 
 
 def _loaded(volts: float, flux: float, drop: float, flux_q: float) -> float:
