@@ -144,7 +144,7 @@ static void add_one(const drive_t* d, staircase_t* s) {
   if (s->turn < TURN_PERIODS) {
     const rotation_t r = frame_rotation(d->position.selected.angle_bam);
     dq_t i = d->control.measured_q20;
-    if (s->at_zero) i.d = d->position.frames[last].current_q18.d * 4;
+    if (s->at_zero) i.d = q_limit(d->position.frames[last].current_q18.d, DRIVE_CURRENT_END_Q20 / 4) * 4;
     add_period(d, l, r, i);
     if (!s->at_zero) add_sag(d, l, r);
   } else {
