@@ -193,7 +193,7 @@ static information_t look(deviation_observer_t* s, const deviation_observer_conf
 // covariances with the angle. Where the angle is not known, as with zero vectors at rest, there is no wave to be seen.
 void deviation_observer_learn(deviation_observer_t* s, const deviation_observer_config_t* c) {
   if (!deviation_observer_is_sure(s)) return;
-  const int32_t lag_q20 = q_min(q_over(q_abs_sat(s->p_as), q_invert(q_abs_sat(s->p_al)), 20), LAG_MAX_Q20);
+  const int32_t lag_q20 = q_min(qc_over(q_abs_sat(s->p_as), q_invert(q_abs_sat(s->p_al)), 20), LAG_MAX_Q20);
   const uint32_t turned_bam = (uint32_t)q_mul_sat(s->speed_bpp, lag_q20, 14);  // a unit of time is 64 periods
   const cogging_seen_t seen = {s->angle_bam - turned_bam, s->speed_bpp, s->load_accel_q8};
   const int32_t taken_q8 = cogging_learn(&s->cogging, &c->cogging, &seen);

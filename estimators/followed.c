@@ -1,6 +1,6 @@
 #include "estimators/followed.h"
 
-#include "hal/qmath/qcall.h"
+#include "hal/qmath/qmath.h"
 
 void followed_step(followed_t* f, int16_t tick, int16_t length, int32_t reference_q20, int32_t flows_q20) {
   const int16_t quarter = length / 4;
@@ -8,7 +8,7 @@ void followed_step(followed_t* f, int16_t tick, int16_t length, int32_t referenc
     f->error_q20 = 0;
     return;
   }
-  f->error_q20 = qc_add_sat(f->error_q20, qc_abs_sat(qc_sub_sat(reference_q20, flows_q20)) / quarter);
+  f->error_q20 = q_add_sat(f->error_q20, q_abs_sat(q_sub_sat(reference_q20, flows_q20)) / quarter);
   f->worst_q20 = q_max(f->worst_q20, f->error_q20);
 }
 

@@ -152,6 +152,13 @@ static void add_one(const drive_t* d, staircase_t* s) {
   }
 }
 
+static void design_one_volt(const drive_t* d) {
+  dead_time_config_t* const c = &commissioning.staircase.one_volt;
+  *c = d->config.dead_time;
+  c->drop_q16 = 65536L;
+  dead_time_design(c);
+}
+
 bool commissioning_climb(drive_t* d) {
   commissioning_t* const c = &commissioning;
   staircase_t* const s = &c->staircase;
@@ -160,12 +167,10 @@ bool commissioning_climb(drive_t* d) {
     s->turn = 0;
     s->tick = 0;
     place(d);
-    s->one_volt = d->config.dead_time;
-    s->one_volt.drop_q16 = 65536L;
-    dead_time_design(&s->one_volt);
     tensor_reset(&c->unsaturated);
     return false;
   }
+  if (c->tick == 2) design_one_volt(d);  // the first periods have enough to do
   commissioning_hold(d);
   if (s->index >= STAIRCASE_LEVELS) {
     commissioning_set_d(d, 0);

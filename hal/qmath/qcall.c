@@ -15,7 +15,3 @@ int32_t qc_follow(int32_t a, int32_t b, unsigned n) { return q_follow(a, b, n); 
 int32_t qc_mul(int32_t a, int32_t b, unsigned shift) { return q_mul(a, b, shift); }
 
 int32_t qc_mul_sat(int32_t a, int32_t b, unsigned shift) { return q_mul_sat(a, b, shift); }
-
-int32_t qc_over(int32_t num, q_inverse_t inverse, unsigned shift) {
-  return qc_mul_sat(num, inverse.value, inverse.exponent - shift);  // as q_over
-}

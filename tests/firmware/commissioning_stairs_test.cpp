@@ -54,6 +54,8 @@ TEST_F(CommissioningStairs, TheFactorIsThatOfOneVolt) {
     inside::current_dq_q20() = {raw(10.0, 20), 0};
     inside::selected().angle_bam = bam(sixths * kPi / 3.0);
     begin();
+    commissioning.tick = 2;  // in which it is made
+    (void)commissioning_climb(&drive);
     stairs().tick = 600;
     (void)commissioning_climb(&drive);
     ASSERT_EQ(stairs().level[0].periods, 1);
