@@ -71,7 +71,7 @@ def key(name: str) -> int:
     found = 0
     for letter in name.lower():
         found = (31 * found + ord(letter)) & 0xFF
-    return found
+    return (found ^ found >> 4) & 0xF
 
 
 def blocks(items: list[str], start: int) -> tuple[list[int], list[int]]:
@@ -88,6 +88,7 @@ def pack(strings: list[str], names: int = 0) -> str:
     """The C file with the texts, the last of which are names."""
     joints = [" "] * (len(strings) - names) + ["_"] * names
     said = [word_code.words(string, joint) for string, joint in zip(strings, joints, strict=True)]
+    word_code.stems(said)
     word_code.phrases(said, joints)
     entries = word_code.entries(said)
     letters = Counter(letter for word in {*entries, *(w for text in said for w in text)} for letter in word)
@@ -104,8 +105,8 @@ def pack(strings: list[str], names: int = 0) -> str:
     starts, more = blocks(["".join(map(bits, [*text, word_code.END])) for text in said], len(words))
     words += more
 
-    def pairs(octets: list[int]) -> list[int]:
-        return [low | high << 8 for low, high in zip_longest(octets[::2], octets[1::2], fillvalue=0)]
+    def pairs(octets: list[int], bits: int = 8) -> list[int]:
+        return [low | high << bits for low, high in zip_longest(octets[::2], octets[1::2], fillvalue=0)]
 
     tables = {
         "packed_starts": starts,
@@ -113,7 +114,7 @@ def pack(strings: list[str], names: int = 0) -> str:
         "packed_entry_counts": of_entries.counts,
         "packed_letter_counts": of_letters.counts,
         "packed_letters": pairs([ord(letter or "\0") for letter in of_letters.symbols]),
-        "packed_keys": pairs([key(name) for name in strings[len(strings) - names :]]),
+        "packed_keys": pairs(pairs([key(name) for name in strings[len(strings) - names :]], 4)),
         "packed_bits": [*words, 0],  # a code is looked for in two words
     }
     plain = sum(len(string) + 1 for string in strings)

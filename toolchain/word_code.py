@@ -3,7 +3,7 @@
 Code words are as long as what they stand for is rare (D. Huffman, "A Method for the Construction of Minimum-Redundancy
 Codes", Proc. IRE 40(9), 1952), those of a length follow each other, so that a table of how many have each length is all
 that reading needs. Between two words their text's joint, a space or an underscore, is not said; a number is a word as
-well. Words that stand side by side often are an entry of their own.
+well. Words that stand side by side often are an entry of their own, and so are the endings that words share.
 """
 
 import heapq
@@ -14,10 +14,13 @@ from collections.abc import Iterable, Mapping
 from itertools import count, pairwise
 
 END = ""  # of a text, and of a word, in the place of an entry or of a letter
+GLUED = "\2"  # first letter of an entry that follows what is before it without a joint
 SPELLED = "\1"  # in the place of an entry: a word's letters follow
 WORD = re.compile(r"[A-Za-z0-9]+|.")
 LETTER_BITS = 4.0  # of a letter of the dictionary, about
 LONGEST = 16  # bits of a code, as firmware/text/packed_text.c takes them
+ENDINGS = ("s", "d", "ed", "ing")
+STEM = 3  # letters that are left of a word at least
 WORTH = 4  # bits that an entry of several words has to save
 
 
@@ -30,11 +33,26 @@ def words(text: str, joint: str = " ") -> list[str]:
 
 def joined(first: str, second: str, joint: str = " ") -> str:
     """What two entries that follow each other say."""
+    if second.startswith(GLUED):
+        return first + second[1:]
     return first + joint + second if _joins(first, second) else first + second
 
 
 def _joins(first: str, second: str) -> bool:
     return first[-1:].isalnum() and second[:1].isalnum()
+
+
+def stems(texts: list[list[str]]) -> None:
+    """Takes the endings of words whose stem is a word as well, or has another ending elsewhere, in place."""
+    said = {word for text in texts for word in text if word.isalpha()}
+    cuts = {word: [(word[: -len(end)], end) for end in ENDINGS if word.endswith(end)] for word in said}
+    kin = Counter(stem for found in cuts.values() for stem, _ in found) + Counter(said)
+    parts = {
+        word: next(([stem, GLUED + end] for stem, end in found if len(stem) >= STEM and kin[stem] > 1), [word])
+        for word, found in cuts.items()
+    }
+    for text in texts:
+        text[:] = [part for word in text for part in parts.get(word, [word])]
 
 
 def _bits(all_of_them: int, *counts: int) -> float:

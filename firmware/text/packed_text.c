@@ -4,6 +4,7 @@
 
 #define END 0u      // first code: a text ends, a word ends
 #define SPELLED 1u  // second code of an entry: a word's letters follow in the text
+#define GLUED 2u    // first letter of a word's ending: without a joint
 
 enum { NO_WORD, OF_DICTIONARY, OF_TEXT };
 
@@ -70,7 +71,9 @@ uint16_t packed_next(packed_reader_t* r) {
   if (c == 0u && r->word_is != NO_WORD) c = next_letter(r);
   if (c == 0u) {
     c = begin_word(r);
-    if (is_of_word(c) && is_of_word(r->last)) {
+    if (c == GLUED) {
+      c = next_letter(r);
+    } else if (is_of_word(c) && is_of_word(r->last)) {
       r->held = c;
       c = r->joint;
     }
@@ -121,8 +124,10 @@ uint16_t packed_find(packed_text_t first, uint16_t texts, const uint16_t* wanted
   const uint16_t place = (uint16_t)(first - (uint16_t)PACKED_FIRST_NAME);
   uint16_t key = 0;
   for (uint16_t k = 0; k < count; k++) key = (31u * key + text_small(wanted[k])) & 0xFFu;
+  key = (key ^ key >> 4) & 0xFu;
   for (uint16_t at = 0; at < texts; at++) {
-    if (octet_at(packed_keys, (uint16_t)(place + at)) != key) continue;
+    const uint16_t k = (uint16_t)(place + at);
+    if ((packed_keys[k / 4u] >> 4u * (k % 4u) & 0xFu) != key) continue;
     if (packed_equals((packed_text_t)(first + at), wanted, count)) return at;
   }
   return texts;

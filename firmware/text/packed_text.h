@@ -3,7 +3,8 @@
 // A character of a string takes a whole word of the C28x's memory. toolchain/pack_text.py takes the texts from the
 // lists that people edit, numbers them (text_numbers.h, made by the build) and packs them to a fifth
 // (toolchain/word_code.py). Where two words or numbers follow each other a space is between them, in a name an
-// underscore. A word that is said once is in no dictionary: its letters are in the text.
+// underscore; an ending that many words share follows its stem. A word that is said once is in no dictionary: its
+// letters are in the text.
 
 #ifndef STILLSPIN_FIRMWARE_TEXT_PACKED_TEXT_H
 #define STILLSPIN_FIRMWARE_TEXT_PACKED_TEXT_H
@@ -55,7 +56,7 @@ bool packed_rest_is(const packed_reader_t* from, const uint16_t* wanted, uint16_
 bool packed_equals(packed_text_t text, const uint16_t* wanted, uint16_t count);
 
 /// Which of so many names, from `first` on, it is: these characters and no more, and capitals count as small letters;
-/// `texts` when it is none. A name is found by its key, almost without reading others.
+/// `texts` when it is none. A name is found by its key, which leaves one of sixteen others to be read.
 uint16_t packed_find(packed_text_t first, uint16_t texts, const uint16_t* wanted, uint16_t count);
 
 /// True when these characters occur in the text; capitals count as small letters.
@@ -63,7 +64,7 @@ bool packed_occurs(packed_text_t text, const uint16_t* wanted, uint16_t count);
 
 // What pack_text.py makes: the word of packed_bits at which every 32nd text begins, and every 32nd entry of
 // the dictionary, which are in the order of their codes; how many codes have one bit, two bits and so on; the letters
-// in the order of theirs and the keys of the names (packed_find), two in a word.
+// in the order of theirs, two in a word, and the keys of the names (packed_find), four in a word.
 extern const uint16_t packed_starts[];
 extern const uint16_t packed_dictionary[];
 extern const uint16_t packed_entry_counts[];

@@ -25,7 +25,7 @@ DEFECTS = (
     ),
     Defect("quotients", "q_reciprocal_q31", "hal/qmath/qdiv.c", "[(divisor >> 24) - 128]", "[(divisor >> 24) - 127]"),
     Defect("quotients", "q_invert", "hal/qmath/qdiv.c", "(divisor > 0) ?", "(divisor >= 0) ?"),
-    Defect("roots", "inverse_root_q30", "hal/qmath/qsqrt.c", "[(m_q32 >> 25) - 32]", "[(m_q32 >> 25) - 31]"),
+    Defect("roots", "guess_q15", "hal/qmath/qsqrt.c", "(m_q32 >> 28) - 4u", "(m_q32 >> 28) - 3u"),
     Defect("angles", "sincos_of_quadrant", "hal/qmath/qtrig.c", "sine_q30[node]", "sine_q30[node + 1u]"),
     Defect(
         "interrupt",
