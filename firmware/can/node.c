@@ -40,15 +40,15 @@ typedef enum { PARAMETER_GET = 0, PARAMETER_SET = 1 } parameter_operation_t;
 static struct {
   can_answer_t answer;
   uint16_t node;
-  int32_t rate_kbit;  // in use; -1: not set up yet
+  uint16_t status_alive;
+  bool request_ready;
+  bool bus_off;
+  int32_t rate_kbit;                                // in use; -1: not set up yet
+  uint32_t status_ms, telemetry_ms, diagnostic_ms;  // last sent
+  uint32_t bus_off_ms;
   can_command_t command;
   segment_joiner_t request;
-  bool request_ready;
   segment_splitter_t response;
-  uint16_t status_alive;
-  uint32_t status_ms, telemetry_ms, diagnostic_ms;  // last sent
-  bool bus_off;
-  uint32_t bus_off_ms;
 } self;
 
 void can_node_reset(can_answer_t answer) {

@@ -1,8 +1,11 @@
 #include "firmware/can/segments.h"
 
 void segment_join_reset(segment_joiner_t* j) {
-  static const segment_joiner_t empty = {{0u}, 0u, 0u, false, 0uL, 0u};
-  *j = empty;
+  j->count = 0u;
+  j->next = 0u;
+  j->open = false;
+  j->dropped = 0u;
+  j->last_ms = 0uL;
 }
 
 static void drop(segment_joiner_t* j) {

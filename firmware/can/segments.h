@@ -25,21 +25,21 @@ extern "C" {
 
 /// What comes.
 typedef struct {
-  uint16_t octets[RECORD_MAX];
   uint16_t count;
   uint16_t next;  // number of the next piece
   bool open;      // between a first and a last piece
   uint32_t last_ms;
   uint16_t dropped;  // records; stays at 65535
+  uint16_t octets[RECORD_MAX];
 } segment_joiner_t;
 
 /// What goes.
 typedef struct {
-  uint16_t octets[RECORD_MAX];
   uint16_t count;  // 0: nothing is on its way
   uint16_t at;
   uint16_t number;
   uint32_t last_ms;  // when a piece was last taken by a mailbox
+  uint16_t octets[RECORD_MAX];
 } segment_splitter_t;
 
 void segment_join_reset(segment_joiner_t* j);

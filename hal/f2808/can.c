@@ -29,16 +29,16 @@ typedef enum { PHASE_OFF, PHASE_ENTER, PHASE_LEAVE, PHASE_RUN } phase_t;
 static struct {
   phase_t phase;
   bool configured;  // mailboxes and bit timing are in the controller
-  uint32_t timing;  // CANBTC
-  hal_can_group_t groups[HAL_CAN_GROUPS_MAX];
-  uint32_t group_mailboxes[HAL_CAN_GROUPS_MAX];
+  bool bus_off;
   uint16_t group_count;
+  uint16_t lost, bus_offs, restarts;
+  uint32_t timing;  // CANBTC
   uint32_t transmit_mailboxes;
   uint32_t protected_mailboxes;          // that are not overwritten
   uint32_t waiting[HAL_CAN_PRIORITIES];  // mailboxes handed over and not known to be empty
   uint32_t last_progress;                // cycles
-  bool bus_off;
-  uint16_t lost, bus_offs, restarts;
+  hal_can_group_t groups[HAL_CAN_GROUPS_MAX];
+  uint32_t group_mailboxes[HAL_CAN_GROUPS_MAX];
 } can;
 
 static uint32_t bit_of(uint16_t mailbox) { return 1uL << mailbox; }
