@@ -23,9 +23,9 @@ typedef struct {
   volatile uint16_t out;
 } ring_t;
 
-static volatile bool ready = false;
-static bool broken = false;  // after a break, until the port has been reset
 static struct {
+  volatile bool ready;
+  bool broken;  // after a break, until the port has been reset
   uint16_t breaks_taken;
   volatile uint16_t break_at;  // in the receive ring: what lies before it came before the last break
   ring_t receive_ring, transmit_ring;
@@ -64,13 +64,13 @@ static void forget(void) {
   self.transmit_ring.in = self.transmit_ring.out = 0u;
   self.errors = (hal_sci_errors_t){0u, 0u, 0u, 0u};
   self.breaks_taken = 0u;
-  broken = false;
+  self.broken = false;
 }
 
 bool hal_sci_init(uint32_t baud) {
   uint16_t divider = 0u;
   if (!divider_for(baud, &divider)) return false;
-  ready = false;  // the control interrupt keeps its hands off meanwhile
+  self.ready = false;  // the control interrupt keeps its hands off meanwhile
   target_write16(SCI + SCI_CTL1, 0u);
   forget();
   target_write16(SCI + SCI_CCR, REG_FIELD(SCI_CCR_SCICHAR, SCICHAR_8_BITS));
@@ -84,7 +84,7 @@ bool hal_sci_init(uint32_t baud) {
   target_write16(SCI + SCI_FFTX, FIFO_TRANSMIT_RUNS);
   target_write16(SCI + SCI_FFRX, FIFO_RECEIVE_RUNS);
   target_write16(SCI + SCI_CTL1, PORT_RUNS);
-  ready = true;
+  self.ready = true;
   return true;
 }
 
@@ -116,9 +116,9 @@ static void receive(void) {
 // once, and it cuts what is being sent: it waits for the line to rise and then for the transmitter, which gets nothing
 // new meanwhile. False while it must get nothing.
 static bool may_send_on(void) {
-  if (!broken) {
+  if (!self.broken) {
     if (!reg_any(SCI + SCI_RXST, SCI_RXST_BRKDT_MASK)) return true;
-    broken = true;
+    self.broken = true;
     self.break_at = self.receive_ring.in;
     self.errors.breaks++;
   }
@@ -126,7 +126,7 @@ static bool may_send_on(void) {
   if (!reg_any(SCI + SCI_CTL2, SCI_CTL2_TXEMPTY_MASK)) return false;
   target_write16(SCI + SCI_CTL1, (uint16_t)(PORT_RUNS & ~SCI_CTL1_SWRESET_MASK));
   target_write16(SCI + SCI_CTL1, PORT_RUNS);
-  broken = false;
+  self.broken = false;
   return true;
 }
 
@@ -144,7 +144,7 @@ static void transmit(void) {
 }
 
 void hal_sci_service(void) {
-  if (!ready) return;
+  if (!self.ready) return;
   receive();
   if (may_send_on()) transmit();
 }
