@@ -1,5 +1,3 @@
-#include <stddef.h>
-
 #include "hal/f2808/f2808_values.h"
 #include "hal/f2808/pie.h"
 #include "hal/f2808/pwm_modules.h"
@@ -11,13 +9,14 @@
 #define CONTROL_GROUP PIE_GROUP(VECTOR_EPWM1_INT)
 #define WINDOW_GROUP PIE_GROUP(VECTOR_SEQ2INT)
 
-static hal_isr_t control_function = NULL;
-static hal_isr_t window_function = NULL;
+static struct {
+  hal_isr_t control, window;
+} functions;
 static volatile uint16_t unexpected_count = 0u;
 
-TARGET_RAM_CODE static TARGET_ISR void control_isr(void) { control_function(); }
+TARGET_RAM_CODE static TARGET_ISR void control_isr(void) { functions.control(); }
 
-TARGET_RAM_CODE static TARGET_ISR void window_isr(void) { window_function(); }
+TARGET_RAM_CODE static TARGET_ISR void window_isr(void) { functions.window(); }
 
 // Not acknowledged: an interrupt that nobody asked for must not come a second time.
 static TARGET_ISR void unexpected_isr(void) {
@@ -40,8 +39,8 @@ void hal_irq_install(hal_isr_t control, hal_isr_t window) {
   target_write_ier(0u);
   clear_controller();
   target_clear_ifr();
-  control_function = control;
-  window_function = window;
+  functions.control = control;
+  functions.window = window;
   unexpected_count = 0u;
   target_eallow();
   for (uint16_t vector = 0u; vector < VECTOR_COUNT; vector++) {
