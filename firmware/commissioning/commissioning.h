@@ -37,13 +37,13 @@ typedef struct {
 } staircase_level_t;
 
 typedef struct {
-  staircase_level_t level[STAIRCASE_LEVELS];
   uint16_t index;
   uint16_t turn;  // period of those in which the sums take turns
   int32_t tick;
   int32_t first_q20, step_q20;  // the first level, and by how much each is above the one before
   dead_time_config_t one_volt;  // the devices, if their drop were that
   bool at_zero;                 // no pulses but those of the voltage: the windows are the zero vector's
+  staircase_level_t level[STAIRCASE_LEVELS];
 } staircase_t;
 
 /// Periods of one sign of the torque in one kind of train (group: 2 * mirrored train + negative sign).
@@ -54,7 +54,6 @@ typedef struct {
 } map_group_t;
 
 typedef struct {
-  map_group_t group[MAP_LEVELS][MAP_GROUPS];
   uint16_t level;
   uint16_t levels;   // with a saliency, or all of them
   int32_t most_q20;  // current of the last level; before the first begins, the mean that leaves the ripple room
@@ -70,6 +69,7 @@ typedef struct {
   int32_t plan[2];      // i_q reference: that of now, and the one before it
   int32_t speed_q8;     // predicted motion in this train: binary angle per period
   int32_t position_bam;
+  map_group_t group[MAP_LEVELS][MAP_GROUPS];
 } map_t;
 
 /// At a steady speed, or between two of them.
@@ -79,13 +79,13 @@ typedef struct {
 } spin_sums_t;
 
 typedef struct {
-  spin_sums_t station[SPIN_STATIONS];
-  spin_sums_t ramp[SPIN_RAMPS];
   bool begun, arrived;
   uint16_t leg;
   uint32_t angle_bam;  // of the last period
   int32_t tick;
   uint16_t waited;  // for a turn's end, periods
+  spin_sums_t station[SPIN_STATIONS];
+  spin_sums_t ramp[SPIN_RAMPS];
 } spin_t;
 
 typedef struct {
@@ -95,6 +95,7 @@ typedef struct {
   bool predicting;        // the angle runs ahead on the torque alone
   bool solve_motion;      // the background level owes acceleration and torque constant from the spin
   bool evaluate;          // the sums are complete and the gates are off
+  bool longer;            // the samples settle, as it wants it, until the parameters are loaded again
   bool uniform;           // no axis at rest: the shaft follows the current, and is not held
   uint32_t target_bam;    // where the shaft is held
   uint32_t goal_bam;      // and where it is to be taken

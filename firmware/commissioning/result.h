@@ -9,8 +9,8 @@
 #define COMMISSIONING_RESULTS 24u
 
 typedef struct {
-  commissioning_result_t list[COMMISSIONING_RESULTS];
   uint16_t count;
+  commissioning_result_t list[COMMISSIONING_RESULTS];
 } commissioning_report_t;
 
 /// Evaluates the sums and says of each value whether it is believed.

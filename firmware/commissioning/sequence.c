@@ -18,17 +18,13 @@ commissioning_t commissioning;
 
 static commissioning_report_t report;
 static const state_request_t commission = {DRIVE_COMMISSION, DRIVE_READY};
-static bool longer;  // the samples settle, as a commissioning wants it, until the parameters are loaded again
 
 typedef struct {
   bool (*step)(drive_t* d);
   int16_t begins;  // per mille of the time of the whole, as motor A takes it
 } phase_t;
 
-void commissioning_reset(void) {
-  clear(&commissioning, sizeof commissioning);
-  longer = false;
-}
+void commissioning_reset(void) { clear(&commissioning, sizeof commissioning); }
 
 static bool at_once(drive_t* d) {
   (void)d;
@@ -116,8 +112,9 @@ static void settle(const drive_t* d) {
 
 // Also of one that was asked for and did not begin.
 static void put_back(void) {
-  if (!longer || drive.request.begin == &commission || commissioning.outcome == COMMISSIONING_RUNNING) return;
-  longer = false;
+  commissioning_t* const c = &commissioning;
+  if (!c->longer || drive.request.begin == &commission || c->outcome == COMMISSIONING_RUNNING) return;
+  c->longer = false;
   drive_parameters_changed();
 }
 
@@ -151,8 +148,8 @@ void commissioning_release_pulses(void) {
 void drive_command_commission(void) {
   drive_exchange();
   const uint16_t state = hal_irq_disable();
-  if (!longer) settle_longer(&drive.config.modulator);
-  longer = true;
+  if (!commissioning.longer) settle_longer(&drive.config.modulator);
+  commissioning.longer = true;
   drive.request.begin = &commission;
   hal_irq_restore(state);
 }
