@@ -43,8 +43,8 @@ typedef struct {
   bool after_return;  // a LF that follows belongs to it
   uint16_t escape;    // where in an escape sequence
   uint16_t parameter;
-  editor_packed_t history[EDITOR_HISTORY];  // [0] is the newest
   uint16_t recalled;                        // 0: the line itself, k: history[k - 1]
+  editor_packed_t history[EDITOR_HISTORY];  // [0] is the newest
 } editor_t;
 
 typedef enum { EDITOR_NOTHING, EDITOR_DONE, EDITOR_BREAK } editor_event_t;

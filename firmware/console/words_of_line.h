@@ -24,9 +24,9 @@ typedef struct {
 #define COMMAND_WORDS 16u
 
 typedef struct {
-  word_t word[COMMAND_WORDS];  // behind the command's own; more than any command takes
   uint16_t count;
-  bool expired;  // it stood for long before its end came
+  bool expired;                // it stood for long before its end came
+  word_t word[COMMAND_WORDS];  // behind the command's own; more than any command takes
 } words_of_line_t;
 
 /// The word from `at` on, or the next one; moves `at` behind it.

@@ -36,12 +36,12 @@ typedef enum {
 } splitter_found_t;
 
 typedef struct {
-  uint16_t octets[RECORD_ENCODED_MAX + 1u];
   uint16_t count;
   bool in_record;
   bool skipping;  // a record that is too long, to its end
   uint32_t last_ms;
   splitter_errors_t errors;
+  uint16_t octets[RECORD_ENCODED_MAX + 1u];
 } splitter_t;
 
 void splitter_reset(splitter_t* s);
