@@ -103,6 +103,7 @@ SECTIONS
                 libstillspin_control.a<speed_controller.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<axis.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<blend.*>(.text, .econst, .switch)
+                libstillspin_estimators.a<cogging.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<deviation_covariance.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<emf_sign.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<followed.*>(.text, .econst, .switch)
@@ -115,6 +116,8 @@ SECTIONS
                 libstillspin_estimators.a<tracking_observer.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<voltage_match.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<wiring.*>(.text, .econst, .switch)
+                libstillspin_firmware.a<crc.*>(.text, .econst, .switch)
+                libstillspin_firmware.a<octets.*>(.text, .econst, .switch)
               } > RESIDENT, PAGE = 0
   .cinit    : > APP,       PAGE = 0
   .pinit    : > APP,       PAGE = 0
