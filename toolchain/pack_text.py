@@ -105,8 +105,8 @@ def pack(strings: list[str], names: int = 0) -> str:
     starts, more = blocks(["".join(map(bits, [*text, word_code.END])) for text in said], len(words))
     words += more
 
-    def pairs(octets: list[int], bits: int = 8) -> list[int]:
-        return [low | high << bits for low, high in zip_longest(octets[::2], octets[1::2], fillvalue=0)]
+    def pairs(octets: list[int], width: int = 8) -> list[int]:
+        return [low | high << width for low, high in zip_longest(octets[::2], octets[1::2], fillvalue=0)]
 
     tables = {
         "packed_starts": starts,

@@ -95,7 +95,7 @@ typedef struct {
   bool predicting;        // the angle runs ahead on the torque alone
   bool solve_motion;      // the background level owes acceleration and torque constant from the spin
   bool evaluate;          // the sums are complete and the gates are off
-  bool longer;            // the samples settle, as it wants it, until the parameters are loaded again
+  bool longer;            // samples settle as long as it wants, until the parameters are loaded again
   bool uniform;           // no axis at rest: the shaft follows the current, and is not held
   uint32_t target_bam;    // where the shaft is held
   uint32_t goal_bam;      // and where it is to be taken

@@ -170,7 +170,7 @@ bool commissioning_climb(drive_t* d) {
     tensor_reset(&c->unsaturated);
     return false;
   }
-  if (c->tick == 2) design_one_volt(d);  // the first periods have enough to do
+  if (c->tick == 2) design_one_volt(d);  // not beside the placing of the levels, which is long
   commissioning_hold(d);
   if (s->index >= STAIRCASE_LEVELS) {
     commissioning_set_d(d, 0);

@@ -1,6 +1,6 @@
-// Operations of qarith.h and qdiv.h as functions. Put in the place of its call each is longer than the call: what runs
-// at the background level takes these, and of the interrupt the start, the commissioning, and a quotient by an inverse
-// in what has its turn in some period.
+// Operations of qarith.h and qdiv.h by calls. Put in the place of its call each is longer than the call: what runs at
+// the background level takes these, and of the interrupt the start, the commissioning, and a quotient by an inverse in
+// what has its turn in some period.
 
 #ifndef STILLSPIN_HAL_QMATH_QCALL_H
 #define STILLSPIN_HAL_QMATH_QCALL_H

@@ -1,9 +1,9 @@
 // Square roots and the length of a vector, correctly rounded.
 //
-// Method: x is normalised by an even shift, 1/sqrt(x) read from a table of 96 entries (7 bits) and refined by two
+// Method: x is normalised by an even shift, 1/sqrt(x) guessed along twelve chords (8 bits) and refined by two
 // Newton steps R <- R (3 - x R^2) / 2 to 25 bits, always from below; the root is then made exact from its remainder.
 //
-// Error: none beyond correct rounding. Cost: q_sqrt64 81 instructions, q_hypot 98. Table: 96 words.
+// Error: none beyond correct rounding. Cost: q_sqrt64 some 90 instructions, q_hypot some 110. Table: 13 words.
 
 #ifndef STILLSPIN_HAL_QMATH_QSQRT_H
 #define STILLSPIN_HAL_QMATH_QSQRT_H

@@ -1,6 +1,7 @@
 """The image for the DSP without TI's tools: linker command files, boot code, resident part, message without cl2000."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -165,6 +166,21 @@ def test_resident_part_is_of_the_floors_below_the_drive(tmp_path: Path) -> None:
         assert pile.words(file)["resident"] == LIBRARY["resident"]
     assert file.section_of("libstillspin_estimators.a", "inverse_inductance.c.obj", ".switch") == "resident"
     assert file.section_of("libstillspin_estimators.a", "inverse_inductance_tensor.c.obj", ".text") == ".text"
+
+
+def test_resident_part_is_linked_whole_whoever_uses_it() -> None:
+    text = "".join(path.read_text(encoding="utf-8") for path in ROOT.glob("*/**/CMakeLists.txt"))
+    members = {
+        (archive.removeprefix("lib").removesuffix(".a"), member.removesuffix(".*"))
+        for placement in read_command_file(ROOT / FLASH).placements
+        if placement.section in link.RESIDENT
+        for archive, member, _ in placement.inputs
+        if not archive.startswith("rts2800")
+    }
+    assert ("stillspin_firmware", "crc") in members
+    for library, name in members:
+        alone = re.search(rf"stillspin_resident_sources\([^)]*/{name}\.c\b", text)
+        assert alone or f"stillspin_resident({library})" in text, f"{name} of {library}"
 
 
 def test_resident_part_that_is_not_the_same_in_all_images_is_caught(tmp_path: Path) -> None:

@@ -136,6 +136,7 @@ def test_unpacking_gives_the_texts_back(edition: str) -> None:
             "aa aa aa",
         ]
         * 3,
+        ["turn turns turned turning", "load_turns s ed", "s", "_ed", "sing sings", "he led the ring", "turn"],
     ],
 )
 @pytest.mark.parametrize("names", [0, 2])

@@ -2,11 +2,11 @@
    `make lint` compares with this file.
 
    Sector A is programmed once, over JTAG: boot entry, passwords, boot code, and the resident part, which refers to
-   nothing outside of itself and has no globals, so that it comes out the same word for word, in every edition, as long as
-   its sources and the compiler do. Sectors B to D hold the rest and are what an update erases; an update brings an image
-   whose sector A is the board's. What does not fit B to D goes behind the resident part: such an image is whole, but no
-   update can bring it. CSM_RESERVED and PASSWORDS take no section and no fill: they stay erased, all ones, which leaves the chip
-   open. Passwords of all zeros would lock it for ever. */
+   nothing outside of itself and has no globals, so that it comes out the same word for word, in every edition, as long
+   as its sources and the compiler do. Sectors B to D hold the rest and are what an update erases; an update brings an
+   image whose sector A is the board's. What does not fit B to D goes behind the resident part: such an image is whole,
+   but no update can bring it. CSM_RESERVED and PASSWORDS take no section and no fill: they stay erased, all ones, which
+   leaves the chip open. Passwords of all zeros would lock it for ever. */
 
 --stack_size=0x400
 
@@ -31,15 +31,15 @@ PAGE 1:
 
 /* The CPU fetches ahead of what it runs: code keeps off the last eight words of a block of memory. Start-up zeroes
    .ebss by the two symbols below, so it has to stay in one piece. There is no heap: .esysmem is empty. The boot ROM
-   has its own stack in 0x400 to 0x47F, and is through when the drive's begins. Resident is, one
-   after the other, what every edition needs of the floors that know nothing of the drive, but for what looks at the
-   windows, which is worked on most; and of TI's library what that calls, but for 64-bit quotients, which commissioning
-   alone wants.
+   has its own stack in 0x400 to 0x47F, and is through when the drive's begins. Resident is, one after the
+   other, what every edition needs of the floors that know nothing of the drive, but for what looks at the windows, which
+   is worked on most; octets and check sums of firmware/base; and of TI's library what that calls, but for 64-bit
+   quotients, which commissioning alone wants.
 
    What runs from RAM has no wait states. ramfixed, ramfixedh0 and ramfuncs list what brings most cycles of an interrupt
    for a word (make isr-cost says what in RAM is cold, and what in flash is hotter than what is listed): objects of the
-   resident part, which run from M0 and from a piece of H0 in every image, and functions of the rest. Of drivers that some images have
-   compiled otherwise (stillspin_unrecorded) it is marked in the source, TARGET_RAM_CODE. */
+   resident part, which run from M0 and from a piece of H0 in every image, and functions of the rest. Of drivers that
+   some images have compiled otherwise (stillspin_unrecorded) it is marked in the source, TARGET_RAM_CODE. */
 
 SECTIONS
 {
