@@ -134,7 +134,7 @@ pictures: build ## renew the pictures of README and book, docs/images
 	@for id in B14 B15 B16; do \
 	  .venv/bin/stillspin run $$id --scheme $(LOW_PASS) --profile ideal --no-plots --out $(PICTURES_OUT)/low-pass/$$id || [ $$? = 1 ] || exit 2; done
 	@$(PYTHON) toolchain/papers_pictures.py $(PICTURES_OUT) docs/images
-	@STILLSPIN_PICTURES=docs/images $(PYTHON) -m pytest -q -c sim_host/pyproject.toml --rootdir . tests/python/test_tune_on_board.py tests/python/test_notebook.py
+	@STILLSPIN_PICTURES=docs/images $(PYTHON) -m pytest -q -c sim_host/pyproject.toml --rootdir . tests/python/test_tune_on_board.py tests/python/test_tune_wizard.py tests/python/test_notebook.py
 	@$(PYTHON) toolchain/keep.py pictures
 
 docs: setup ## build the book into site/

@@ -56,6 +56,25 @@ def test_numbers_that_a_node_does_not_know_are_unknown_in_its_telemetry_too():
     assert telemetry(1).endswith(unknown)
 
 
+def test_currents_of_a_start_are_shown_though_the_rotor_is_not_known():
+    """The state is each node's own, too, and with the start's end it is over."""
+    decoder = Decoder(load(_DBC))
+
+    def status(node, state):
+        return decoder.line(message(0x180 + node, bytes((state, 0, 0, 0, 40, 0, 0, 0))))
+
+    def telemetry(node):
+        return decoder.line(message(0x200 + node, bytes((100, 0, 0, 0, 0x10, 0x27, 0, 0))))
+
+    assert status(1, state=3).endswith("SPEED unknown  REFERENCE 0 rpm")
+    assert telemetry(1).endswith("CURRENT_D 0.1 A  CURRENT_Q 0 A  LINK_VOLTAGE 100 V  LOAD_TORQUE unknown")
+    assert "CURRENT_D unknown  CURRENT_Q unknown" in telemetry(2)
+    for state in (2, 4, 6):
+        assert status(1, state=3)
+        assert status(1, state=state).endswith("SPEED unknown  REFERENCE 0 rpm")
+        assert "CURRENT_D unknown  CURRENT_Q unknown" in telemetry(1)
+
+
 def test_another_description_without_the_flag_is_decoded_as_it_stands(tmp_path):
     lines = _DBC.read_text(encoding="utf-8").splitlines()
     (tmp_path / "other.dbc").write_text("\n".join(line for line in lines if "SPEED_KNOWN" not in line))

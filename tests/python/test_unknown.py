@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from pathlib import Path
 
 import pytest
 from function_desk import FAULT, READY, RUN, Desk
@@ -16,8 +17,17 @@ ASKED_FOR = (
     *("voltage_d", "voltage_q", "voltage_alpha", "voltage_beta"),
 )
 """With the power stage off nothing is."""
-SENSOR_NOISE = 0.05
-"""A; the sensors' noise and what a code is worth, in the mean of a period."""
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+
+
+def promised(page):
+    """A; what a page of the book says that sensors read at rest: their noise and what a code is worth."""
+    text = (DOCS / page).read_text(encoding="utf-8")
+    (said,) = re.findall(r"current_a` and `current_b`[^\d\n]* below (\d+\.\d+) A", text)
+    return float(said)
+
+
+SENSOR_NOISE = promised("wiring.md")
 
 
 @pytest.fixture
@@ -39,6 +49,10 @@ def expect_nothing_known(desk: Desk) -> None:
     assert all(abs(float(value)) <= SENSOR_NOISE for value in currents.groups())
     assert "unknown, the shaft may be turning" in desk.type("watch", 100)
     desk.type("", 20)
+
+
+def test_the_pages_for_a_new_board_promise_the_same():
+    assert SENSOR_NOISE == promised("bring-up.md") == 0.05
 
 
 def test_an_idle_board_at_full_link_shows_the_sensors_noise_and_no_estimate(desk):

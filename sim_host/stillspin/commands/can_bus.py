@@ -28,8 +28,11 @@ _NODE_MASK = 0x7F
 """An identifier is a base, a multiple of 0x80, plus the node."""
 _WAIT = 0.2
 _FLAG = ("STATUS", "SPEED_KNOWN")
-_BY_FLAG = {"STATUS": ("SPEED",), "TELEMETRY_1": ("CURRENT_D", "CURRENT_Q", "LOAD_TORQUE")}
+_STATE, _START = "STATE", 3
+_OF_ROTOR = {"STATUS": ("SPEED",), "TELEMETRY_1": ("LOAD_TORQUE",)}
 """Signals that are 0 on the bus, and unknown, while the flag is 0."""
+_OF_CURRENTS = {"TELEMETRY_1": ("CURRENT_D", "CURRENT_Q")}
+"""The same of these, but that a start shows them in the frame that it works in before it knows the rotor's."""
 
 
 def bus(
@@ -106,6 +109,8 @@ class Decoder:
         self._flagged = _FLAG in described
         self._known: set[int] = set()
         """Nodes whose last STATUS says that angle and speed are known."""
+        self._starting: set[int] = set()
+        """Nodes whose last STATUS says that they start."""
 
     def line(self, message: can.Message) -> str:
         """A line for a message: time, node, name, signals with units."""
@@ -126,9 +131,20 @@ class Decoder:
 
     def _unknown(self, node: int, name: str, values: Any) -> Collection[str]:
         """Signals of a message whose numbers mean nothing now: a node that has not said that it knows does not."""
-        if self._flagged and name == _FLAG[0]:
+        if not self._flagged:
+            return ()
+        if name == _FLAG[0]:
             (self._known.add if values[_FLAG[1]] else self._known.discard)(node)
-        return _BY_FLAG.get(name, ()) if self._flagged and node not in self._known else ()
+            (self._starting.add if _is_start(values.get(_STATE)) else self._starting.discard)(node)
+        if node in self._known:
+            return ()
+        of_currents = () if node in self._starting else _OF_CURRENTS.get(name, ())
+        return (*_OF_ROTOR.get(name, ()), *of_currents)
+
+
+def _is_start(state: Any) -> bool:
+    """Also of a description without words for the states."""
+    return bool(getattr(state, "value", state) == _START)
 
 
 def _signals(values: Any, units: Mapping[str, str], unknown: Collection[str]) -> str:
