@@ -27,6 +27,7 @@ def main(name: str, *command: str) -> int:
     if status != 0 and not (result.exists() and result.stat().st_mtime >= begun):
         return status
     figures = records.sums(result) if result.is_dir() else json.loads(result.read_text(encoding="utf-8"))
+    figures = figures[made.part] if made.part else figures
     before = records.load(ROOT).get(name, {})
     records.keep(ROOT, name, made.command, figures, made_of)
     if before.get("figures") != figures:

@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -35,6 +36,14 @@ def test_who_is_about_to_use_a_chip_reads_first_how_the_image_fits(page: str) ->
     assert f"{fit.of_flash(fit.words):.0f} % of the flash" in top
     assert f"{fit.of_period(fit.worst):.0f} % of its period" in top
     assert "image.md#does-it-fit" in top
+
+
+def test_the_clients_page_has_every_extra() -> None:
+    """Less what they need who change the sources."""
+    project = tomllib.loads((ROOT / "sim_host" / "pyproject.toml").read_text(encoding="utf-8"))
+    page = (ROOT / "docs" / "client.md").read_text(encoding="utf-8")
+    named = re.findall(r"^\| `stillspin\[(\w+)\]` \|", page, re.MULTILINE)
+    assert sorted([*named, "dev"]) == sorted(project["project"]["optional-dependencies"])
 
 
 def test_a_smaller_and_faster_image_fits() -> None:

@@ -11,7 +11,9 @@ from typer.testing import CliRunner
 
 from stillspin import catalogue, cli, core, json_schema, resources
 from stillspin.cases import file_schema, nameplate, profile
+from stillspin.drive.own import firmware
 from stillspin.errors import InputError
+from stillspin.revision import revision
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMES = [entry.name for entry in catalogue.entries()]
@@ -140,7 +142,9 @@ def test_what_the_drive_says_of_each_is_listed_and_on_record(native, tmp_path):
     on_record = json.loads((ROOT / "docs/figures/catalogue.json").read_text(encoding="utf-8"))["figures"]
     said = CliRunner().invoke(cli.app, ["motor", "list", "--json", str(tmp_path / "said.json")])
     assert "refused" in said.stdout
-    assert json.loads((tmp_path / "said.json").read_text(encoding="utf-8")) == on_record
+    written = json.loads((tmp_path / "said.json").read_text(encoding="utf-8"))
+    assert written.pop("motors") == on_record
+    assert written == {"revision": revision(), "firmware": firmware()}
     assert set(on_record) == set(NAMES)
 
 

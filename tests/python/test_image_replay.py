@@ -7,12 +7,15 @@ import pytest
 from c28x_chip import changed_file, linked_file
 from in_process import stillspin
 
-from stillspin import core
+from stillspin import __version__, core
 from stillspin.board import power
 from stillspin.board.image import blocks_of
 from stillspin.cases import profile, scenario_file
+from stillspin.drive.own import firmware
 from stillspin.errors import InputError
+from stillspin.flash import demonstration
 from stillspin.image import opened, tape
+from stillspin.revision import revision
 from stillspin.runs import execute
 from stillspin.runs.execute import Settings
 
@@ -202,6 +205,32 @@ def test_the_commands(tmp_path, control):
     assert "differs: recorded step" in done.stdout
     assert "EPwm1.CMPA" in done.stdout
     assert "(control.asm:" in done.stdout
+
+
+def test_a_tape_says_which_firmware_and_which_sources_made_it(tmp_path):
+    file = tmp_path / "own.tape"
+    done = run_command("record", file, "--for", "0.001")
+    assert done.exit_code == 0, done.stderr
+    content = json.loads(file.read_text())
+    assert (content["made_by"], content["firmware"], content["revision"]) == ("firmware", firmware(), revision())
+    assert tape.load(file).firmware == firmware()
+    assert tape.load(file).revision == revision()
+
+
+def test_a_tape_of_an_image_says_what_the_image_says_of_itself(tmp_path):
+    marked = opened.look(demonstration.write(tmp_path)[0])
+    assert opened.identity(marked) == f"{__version__} (a demonstration, for a virtual board alone)"
+    said = []
+    for amount in ("8", "7"):
+        folder = tmp_path / amount
+        folder.mkdir()
+        source = changed_file(folder, "control", "control.asm", "SFR     ACC,#8", f"SFR     ACC,#{amount}")
+        image, file = linked_file(folder, "control", [source]), folder / "control.tape"
+        assert run_command("record", file, "--image", image, "--for", "0.001").exit_code == 0
+        said.append(json.loads(file.read_text())["firmware"])
+        assert said[-1] == opened.identity(opened.read(image))
+    assert said[0].startswith("no identity, SHA-256 of its words ")
+    assert said[0] != said[1], "one instruction is another"
 
 
 def test_what_is_no_tape_is_said(tmp_path):

@@ -45,12 +45,13 @@ class Made:
 
     Attributes:
         command: that renews it; result: the file that it leaves, or the folder of pictures, of which the record has
-            sums; sources: what decides its figures.
+            sums; sources: what decides its figures; part: what of the result is kept, all where it is empty.
     """
 
     command: str
     result: str
     sources: tuple[str, ...]
+    part: str = ""
 
 
 COMPOSER = tuple(
@@ -90,6 +91,7 @@ COMMANDS = {
         "make catalogue",
         "build/catalogue/figures.json",
         (*RUNS, "sim_host/motors", "sim_host/stillspin/catalogue.py"),
+        "motors",
     ),
     "pictures": Made(
         "make pictures",

@@ -16,6 +16,7 @@ from stillspin.board import power
 from stillspin.cases import profile, scenario_file
 from stillspin.core_board import NativeBoard
 from stillspin.counted import counted
+from stillspin.drive.own import firmware
 from stillspin.errors import CampaignError, InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.image import opened
@@ -152,7 +153,8 @@ def record(
             tape = tapes.play(board, _USUAL if seconds is None else seconds, octets)
             if image:
                 opened.say(board, image)
-    tapes.save(replace(tape, made_by=file.name if file else "firmware"), out)
+    made_by, says = (image.file.name, opened.identity(image)) if image else ("firmware", firmware())
+    tapes.save(replace(tape, made_by=made_by, firmware=says, revision=revision()), out)
     print(f"{out}: {counted(len(tape.samples), 'sample')}, {counted(len(tape.writes), 'write')} to the ePWM")
 
 

@@ -17,11 +17,13 @@ from stillspin.cases.flux_table import Columns
 from stillspin.cases.motor_told import Motor
 from stillspin.commands import motor_defaults, schema
 from stillspin.counted import counted
+from stillspin.drive.own import firmware
 from stillspin.errors import InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.one_line_errors import OneLineErrors
 from stillspin.options import ProfileOption
 from stillspin.report import tables
+from stillspin.revision import revision
 
 app = typer.Typer(cls=OneLineErrors, help="Motor files: make one, check one; the catalogue.", rich_markup_mode=None)
 
@@ -47,7 +49,8 @@ def list_(
         verdicts = {entry.name: catalogue.verdict(entry.name, native) for entry in motors}
     tables.catalogue(motors, verdicts)
     if out:
-        content = {name: asdict(verdict) for name, verdict in verdicts.items()}
+        said = {name: asdict(verdict) for name, verdict in verdicts.items()}
+        content = {"revision": revision(), "firmware": firmware(), "motors": said}
         whole_file.write(out, json.dumps(content, indent=1, ensure_ascii=False) + "\n")
 
 

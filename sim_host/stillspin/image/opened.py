@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -18,8 +19,8 @@ from stillspin.core import NativeCore, Plant
 from stillspin.core_board import NativeBoard
 from stillspin.counted import counted
 from stillspin.errors import CampaignError, InputError
-from stillspin.flash import names, sections
-from stillspin.flash.files import read_boot_rom, read_program
+from stillspin.flash import layout, names, sections
+from stillspin.flash.files import identity_of, read_boot_rom, read_program
 from stillspin.flash.names import Names
 from stillspin.flash.program import Program
 from stillspin.image import foreign, remarks, runaway, unmodelled
@@ -69,6 +70,22 @@ def read(file: Path, rom: Path | None = None) -> Image:
     if image.foreign:
         raise InputError(f"{file}: {image.foreign}")
     return image
+
+
+def identity(image: Image) -> str:
+    """What an image of the drive says of itself; of another program, which does not, a sum over its words."""
+    size = layout.IDENTITY_WORDS
+    for block in image.program.blocks:
+        at = layout.IDENTITY - block.address
+        if not 0 <= at < len(block.words) or block.words[at] != layout.MARK:
+            continue
+        erased = (layout.ERASED,) * size  # what the file has not of it
+        if found := identity_of((*block.words[at : at + size], *erased)[:size]):
+            return found.text
+    total = hashlib.sha256()
+    for block in sorted(image.program.blocks, key=lambda block: block.address):
+        total.update(b"".join(word.to_bytes(4, "little") for word in (block.address, *block.words)))
+    return f"no identity, SHA-256 of its words {total.hexdigest()[:16]}"
 
 
 def power_on(image: Image, profile_name: str, motor: str, seed: int) -> NativeBoard:

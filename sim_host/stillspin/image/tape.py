@@ -52,6 +52,10 @@ class Tape:
     made_by: str
     inputs: list[list[Change]]
     """Changes of pins 0 to 15, 16 to 31 and 32 to 34, of the active trip inputs, and of the encoder's edges."""
+    firmware: str = ""
+    """What made it says of itself: version, edition, commit and tables."""
+    revision: str = ""
+    """Of the sources of this program."""
 
 
 @dataclass(frozen=True)
@@ -152,6 +156,8 @@ def save(tape: Tape, file: Path) -> None:
     content = {
         "tape": _FORMAT,
         "made_by": tape.made_by,
+        "firmware": tape.firmware,
+        "revision": tape.revision,
         "seconds": tape.seconds,
         "octets": tape.octets,
         "samples": tape.samples,
@@ -181,6 +187,8 @@ def load(file: Path) -> Tape:
             [(float(when), str(text)) for when, text in content["octets"]],
             str(content["made_by"]),
             [[(int(step), int(looks), int(value)) for step, looks, value in rows] for rows in content["inputs"]],
+            str(content.get("firmware", "")),
+            str(content.get("revision", "")),
         )
     except OSError as error:
         raise InputError(f"{file}: cannot be read ({error.strerror})") from error
