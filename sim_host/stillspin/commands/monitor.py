@@ -103,8 +103,11 @@ def _draw(drive: Drive, stream: Stream, screen: Console, end: float) -> None:
 
 def _picture(panels: list[_Panel], stream: Stream, status: Status, screen: Console) -> Group:
     width = max(20, screen.width - _LABEL - 1)
-    height = max(3, (screen.height - 2) // max(1, len(panels)) - 2)
-    parts = [_headline(status, stream.lost)]
+    head = [_headline(status, stream.lost)]
+    if status.remedy:
+        head.append(Text(status.remedy, style="red"))
+    height = max(3, (screen.height - 1 - len(head)) // max(1, len(panels)) - 2)
+    parts = list(head)
     for panel in panels:
         parts += _panel(panel, stream, width, height)
     return Group(*parts)

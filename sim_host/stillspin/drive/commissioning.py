@@ -61,7 +61,7 @@ def follow(drive: Motion, on_progress: OnProgress | None) -> Report:
         if begun and not running:
             break
         if not begun and (raw.fault or time.monotonic() - asked > _BEGIN):
-            cause = drive.words(Words.FAULT, raw.fault) if raw.fault else "the drive does not begin"
+            cause = drive.describe_status(raw).fault_text or "the drive does not begin"
             raise DriveError(f"no commissioning: {cause}")
         if on_progress and on_progress(raw.progress / 1000, drive.words(Words.PHASE, raw.phase)) is False:
             drive.stop()
@@ -69,7 +69,7 @@ def follow(drive: Motion, on_progress: OnProgress | None) -> Report:
     if raw.outcome == ABORTED:
         raise DriveError("the commissioning was stopped; the parameters are as before")
     if raw.outcome not in {DONE, PARTLY}:
-        raise DriveError(f"the commissioning failed: {drive.words(Words.FAULT, raw.fault)}")
+        raise DriveError(f"the commissioning failed: {drive.describe_status(raw).fault_text}")
     report = Report(results(drive), raw.outcome == DONE, drive.status().unsaved_text)
     if on_progress:
         on_progress(1.0, f"done: {report.unsaved}" if report.unsaved else "done")

@@ -11,7 +11,7 @@ from stillspin.drive import describe, protocol
 from stillspin.drive.describe import unpack
 from stillspin.drive.protocol import Command, Request, StatusCode, Words
 from stillspin.drive.requester import Requester
-from stillspin.drive.state import Fault, RawFault, RawStatus, Status, rpm
+from stillspin.drive.state import WIRING_FAULTS, Fault, RawFault, RawStatus, Status, rpm
 from stillspin.drive.table import KNOWN_ROTOR, Table
 from stillspin.errors import InputError
 from stillspin.link.errors import RefusedError
@@ -19,6 +19,9 @@ from stillspin.link.transport import Transport
 
 _LIMIT_BITS = 16
 _SIGNALS_MOST = 16
+_WIRING = "wiring"
+_OR_NOTHING = frozenset({Words.REMEDY, Words.WIRING})
+"""Kinds of words that only add to others: a drive without them says the others alone."""
 
 
 class Inspection:
@@ -98,7 +101,7 @@ class Inspection:
         return Status(
             time=raw.time_ms / 1e3,
             state=self.words(Words.STATE, raw.state),
-            fault=self.words(Words.FAULT, raw.fault) if raw.fault else "",
+            fault=self._fault(raw.fault) if raw.fault else "",
             remedy=self.words(Words.REMEDY, raw.fault) if raw.fault else "",
             limits=tuple(self.words(Words.LIMIT, bit) for bit in bits),
             speed=rpm(raw.speed_q16, bool(raw.known & KNOWN_ROTOR)),
@@ -108,6 +111,14 @@ class Inspection:
             unsaved=raw.unsaved_known,
             raw=raw,
         )
+
+    def _fault(self, code: int) -> str:
+        """The cause, and of a mistake of the wiring which one the last start has seen."""
+        parts = [self.words(Words.FAULT, code)]
+        if code in WIRING_FAULTS and any(signal.name == _WIRING for signal in self.table.signals):
+            seen = int(self.signals(_WIRING)[_WIRING])
+            parts.append(self.words(Words.WIRING, seen) if seen else "")
+        return ": ".join(filter(None, parts))
 
     def faults(self) -> list[Fault]:
         """The drive's fault memory, newest first."""
@@ -144,7 +155,7 @@ class Inspection:
                 self._words[kind, code] = body.decode("ascii", "replace").rstrip("\0")
             except RefusedError as error:
                 unknown = str(error) if error.status == StatusCode.EDITION else f"{kind.name.lower()} {code}"
-                self._words[kind, code] = "" if kind == Words.REMEDY else unknown
+                self._words[kind, code] = "" if kind in _OR_NOTHING else unknown
         return self._words[kind, code]
 
     def command(self, code: Command, argument: int = 0) -> None:

@@ -155,5 +155,5 @@ class Motion(Adjustment):
         wait_until(lambda: self.raw_status().state in {RUN, FAULT}, timeout)
         status = self.status()
         if status.raw.state != RUN:
-            why = status.fault or f"the drive is {status.state} after {timeout:g} s"
-            raise DriveError("; ".join(filter(None, (f"the motor does not run: {why}", status.remedy))))
+            why = status.fault_text or f"the drive is {status.state} after {timeout:g} s"
+            raise DriveError(f"the motor does not run: {why}")

@@ -90,6 +90,11 @@ class Words(IntEnum):
     SCOPE = 10
     CAN = 11
     """State of the drive on the CAN bus."""
+    BOARD = 12
+    SELFTEST = 13
+    WIRING = 14
+    """Which phase or sensor is wired wrongly."""
+    LOOK = 15
 
 
 REPEATABLE = frozenset(

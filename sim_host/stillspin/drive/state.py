@@ -27,6 +27,8 @@ WORDS = {
 }
 ENERGISED = frozenset({START, RUN, STOP, COMMISSION})
 COMMISSIONING_RUNNING = 1
+WIRING_FAULTS = range(25, 28)
+"""Faults of which the signal `wiring` says which phase or sensor it is, firmware/start/flying/fault_list.h."""
 _UNSAVED_UNKNOWN = 255
 
 
@@ -78,7 +80,7 @@ class Status:
     """Seconds since the drive was switched on."""
     state: str
     fault: str
-    """Empty when there is none."""
+    """Empty when there is none; of a mistake of the wiring it says which phase or sensor, where the drive does."""
     remedy: str
     """What to do about it."""
     limits: tuple[str, ...]
@@ -99,6 +101,11 @@ class Status:
     def speed_text(self) -> str:
         """The speed for people."""
         return f"{self.speed:.1f} rpm" if self.speed_known else "speed unknown: the shaft may be turning"
+
+    @property
+    def fault_text(self) -> str:
+        """The fault, and what to do about it; empty when there is none."""
+        return "; ".join(filter(None, (self.fault, self.remedy)))
 
     @property
     def unsaved_text(self) -> str:
