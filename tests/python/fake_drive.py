@@ -55,6 +55,7 @@ class FakeDrive:
         self.corrupt = []  # types of requests of which the next answer arrives damaged
         self.stubborn = 0  # number of the parameter that cannot be set
         self.start_fault = 0  # what the next start ends in
+        self.begins = RUN  # its state behind a start
         self.chatter = b""  # said before the next answer
         self.typed = b""
         self.lines = []  # of the console
@@ -166,7 +167,7 @@ class FakeDrive:
         self.start(argument)
 
     def start(self, holder):
-        self.state, self.guarded, self.holder, self._heard = RUN, bool(holder & 1), holder, time.monotonic()
+        self.state, self.guarded, self.holder, self._heard = self.begins, bool(holder & 1), holder, time.monotonic()
 
     def _move(self):
         now = time.monotonic()

@@ -1,6 +1,8 @@
 """How the page looks: nothing cut off or wasted at three sizes, units, words for numbers, and no lost samples."""
 
+import re
 import time
+from pathlib import Path
 
 import pytest
 from desk import needs_board
@@ -11,6 +13,7 @@ from stillspin.tune.actions import ACTIONS
 from stillspin.tune.describe import describe
 from stillspin.tune.server import Server
 
+ROOT = Path(__file__).resolve().parents[2]
 TABS = ("live", "parameters", "scope", "faults", "commissioning")
 SIZES = [(1440, 900), (1024, 768), (390, 844)]
 CUT_OFF = """() => [...document.querySelectorAll("body *")]
@@ -78,6 +81,41 @@ def test_numbers_that_stand_for_something_are_words_of_the_drive():
         assert said["state"][2] == "ready"
         assert said["fault"][14] == "emergency stop"
         assert all(all(text for text in list_[1:]) for name, list_ in said.items() if name != "limit")
+
+
+COUNTS = {"windows"}
+"""Signals without a unit that are numbers, and stand for nothing."""
+
+
+@needs_board
+def test_every_signal_that_stands_for_something_has_all_the_drives_words():
+    """Whole numbers without a unit: a new one is a count, or has words."""
+    with Drive.virtual(speed=0) as drive:
+        said = choices.of_signals(drive)
+        whole = {signal.name for signal in drive.table.signals if not signal.unit and not signal.q}
+        assert set(said) == whole - COUNTS
+        assert whole > COUNTS
+        kinds = {"state": "STATE", "start_phase": "START", "limit": "LIMIT", "wiring": "WIRING"}
+        assert set(kinds) == set(said) - {"fault", "speed_known"}  # as many as the table says; a flag
+        rows = (ROOT / "firmware" / "text" / "catalogue_list.h").read_text(encoding="utf-8")
+        for name, kind in kinds.items():
+            words = re.findall(rf'^WORDS\({kind}, \d+, "(.*)"\)$', rows, re.MULTILINE)
+            assert said[name][: len(words)] == words
+            assert len(said[name]) == (16 if name == "limit" else len(words))  # as many as its bits
+        assert said["speed_known"] == ["no", "yes"]
+
+
+@needs_board
+def test_the_page_says_what_is_wired_wrongly_in_words_among_the_signals(page):
+    planted = ["fault.from_power_on=true", "fault.gain_sensor=b", "fault.gain_sensor_factor=-1"]
+    with Drive.virtual("bench", planted) as drive, Server(drive) as server:
+        server.bench.plot(["wiring", "speed_known"])
+        page.goto(server.address)
+        page.wait_for_selector("[data-value=wiring]:has-text('no mistake found')")
+        page.wait_for_selector("[data-value=speed_known]:text-is('no')")
+        page.check("#keep")
+        page.click("#hold")
+        page.wait_for_selector("[data-value=wiring]:text-is('sensor b is reversed')")
 
 
 @needs_board

@@ -85,6 +85,7 @@ def test_a_motor_is_started_tuned_captured_and_its_fault_understood(tuned):
     tuned.check("#keep")
     tuned.click("#hold")
     tuned.wait_for_selector("#state:has-text('running')")
+    tuned.wait_for_selector("#hold:text-is('Running: press to stop')")
     assert wait_until(lambda: abs(speed(tuned) - 300) < 6, SLOW)
 
     # Change a parameter, and see the speed follow it: with a slower ramp it takes seconds.

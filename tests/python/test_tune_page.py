@@ -7,7 +7,7 @@ import pytest
 from stillspin import csv_table
 from stillspin.drive.requester import wait_until
 
-READY, RUN = 2, 4
+READY, START, RUN = 2, 3, 4
 
 
 @pytest.fixture
@@ -39,6 +39,30 @@ def test_holding_the_button_runs_the_motor(tuned, fake):
     assert fake.state == RUN
     tuned.mouse.up()
     tuned.wait_for_selector("#state:has-text('ready')")
+
+
+@pytest.mark.parametrize(("keep", "ends"), [(True, "press to stop"), (False, "let go to stop")])
+def test_the_button_says_no_more_of_the_motor_than_the_drive_has_said(tuned, fake, keep, ends):
+    tuned.evaluate(
+        """() => {
+            const button = document.getElementById('hold');
+            window.said = [];
+            new MutationObserver(() => window.said.push(button.textContent)).observe(button, {childList: true});
+        }"""
+    )
+    tuned.set_checked("#keep", keep)
+    fake.begins = START
+    hold(tuned)
+    tuned.wait_for_selector(f"#hold:text-is('Start: {ends}')")
+    assert tuned.inner_text("#state") == "start"
+    fake.state = RUN
+    tuned.wait_for_selector(f"#hold:text-is('Run: {ends}')")
+    assert tuned.inner_text("#state") == "run"
+    held = [words for words in tuned.evaluate("window.said") if ends in words]
+    assert list(dict.fromkeys(held)) == [f"{word}: {ends}" for word in ("Asked to start", "Start", "Run")]
+    tuned.keyboard.press("Escape")
+    tuned.wait_for_selector("#state:has-text('ready')")
+    tuned.wait_for_selector(f"#hold:text-is('{'Start' if keep else 'Hold to run'}')")
 
 
 def test_the_space_bar_and_escape(tuned, fake):
@@ -99,6 +123,22 @@ def test_parameters_are_searched_changed_and_refused_in_words(tuned, fake):
     field.press("Enter")
     error = tuned.wait_for_selector("[data-name=speed_ramp] .error:visible")
     assert error.inner_text() == "speed_ramp: 200000 rpm/s is out of range; 0 … 100000 rpm/s"
+
+
+@pytest.mark.parametrize(
+    ("unsent", "said"),
+    [
+        (3, "3 samples did not arrive: not sent, the drive's port has no room for so many"),
+        (0, "3 samples did not arrive: lost on the way, this computer is too busy"),
+    ],
+)
+def test_samples_that_did_not_arrive_are_said_beside_the_plots_with_the_cause(tuned, fake, unsent, said):
+    tuned.wait_for_selector("[data-value=current_d]")
+    time.sleep(1.2)  # s: the server asks for the cause once a second at most
+    assert tuned.inner_text("#stream-lost") == ""
+    fake.unsent, fake.missing = unsent, 3
+    lost = tuned.wait_for_selector(f'#stream-lost:has-text("{said}")')
+    assert lost.get_attribute("title") == "The time axis has a gap there."
 
 
 def test_a_capture_a_fault_and_the_commissioning_are_shown(tuned, fake, drive):

@@ -73,6 +73,7 @@ def test_a_motor_is_asked_for_checked_set_measured_and_saved(tmp_path, monkeypat
             box.check()
         page.click("#commission")
         page.wait_for_selector("#state:has-text('commissioning')")
+        page.wait_for_selector("#hold:text-is('Commissioning: press to stop')")
         follow_the_time_left(page)
         page.wait_for_selector("#wizard :text('DC staircase')")
         fits(page)

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from desk import board, needs_board
 from screen import terminal
+
 from stillspin.drive import Drive
 from stillspin.drive.protocol import Request, StatusCode, Words
 from stillspin.drive.requester import wait_until

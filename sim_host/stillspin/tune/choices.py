@@ -10,7 +10,8 @@ from stillspin.drive.table import Parameter
 
 _MOST = 32
 _YES_NO = ["no", "yes"]
-_STATES, _STARTS, _LIMITS = 8, 9, 16
+_FLAGS = {"speed_known"}
+_STATES, _STARTS, _LIMITS, _WIRINGS = 8, 9, 16, 12
 
 
 def of_parameter(parameter: Parameter) -> list[str]:
@@ -38,16 +39,19 @@ def _listed(meaning: str, numbers: range) -> list[str]:
 
 
 def of_signals(drive: Drive) -> dict[str, list[str]]:
-    """Words for the values of signals that are states; of `limit`, for its bits."""
+    """Words for the values of signals that stand for something; of `limit`, for its bits."""
     kinds = {
         "state": (Words.STATE, _STATES),
         "fault": (Words.FAULT, drive.table.faults),
         "start_phase": (Words.START, _STARTS),
         "limit": (Words.LIMIT, _LIMITS),
+        "wiring": (Words.WIRING, _WIRINGS),
     }
     known = {signal.name for signal in drive.table.signals}
-    return {
+    said = {
         name: [drive.words(kind, code) for code in range(count)]
         for name, (kind, count) in kinds.items()
         if name in known
     }
+    said |= dict.fromkeys(_FLAGS & known, _YES_NO)
+    return {name: words for name, words in said.items() if any(words)}  # an older drive may have none

@@ -88,6 +88,7 @@ export class Run {
     this.energised = false;
     this.begun = 0;
     this.beat = setInterval(() => this.link.say({ t: "hold" }), BEAT);
+    if (this.status) by("hold").textContent = this.offer(this.status);
     document.body.classList.add("held");
     this.link
       .ask(what, given)
@@ -172,6 +173,14 @@ export class Run {
     for (const element of document.querySelectorAll("[data-stopped]")) element.disabled = true;
   }
 
+  /** What the button does, behind what the drive says of the motor: before it begins, only that it was asked to. */
+  offer({ energised, state }) {
+    const keep = by("keep").checked;
+    if (!this.held) return keep ? "Start" : "Hold to run";
+    const doing = energised ? state[0].toUpperCase() + state.slice(1) : "Asked to start";
+    return `${doing}: ${keep ? "press" : "let go"} to stop`;
+  }
+
   show(status) {
     this.status = status;
     this.energised ||= status.energised;
@@ -191,9 +200,8 @@ export class Run {
     by("fault").hidden = !status.fault;
     by("fault-words").textContent = status.remedy ? `${status.fault}:` : status.fault;
     by("fault-remedy").textContent = status.remedy;
-    const keep = by("keep").checked;
     by("hold").disabled = !(this.held || this.ready);
-    by("hold").textContent = this.held ? (keep ? "Running: press to stop" : "Running: let go to stop") : keep ? "Start" : "Hold to run";
+    by("hold").textContent = this.offer(status);
     for (const element of document.querySelectorAll("[data-stopped]")) element.disabled = status.energised;
   }
 }
