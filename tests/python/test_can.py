@@ -342,6 +342,43 @@ def test_python_can_carries_records(board):
         assert (record.kind, record.tag) == (0x81, 0x55)
 
 
+def _broadcast(board, seconds, seen):
+    """What STATUS and TELEMETRY_1 say for so long; `seen` is called every millisecond of it."""
+    messages = drive_can.database()
+    said = {"STATUS": [], "TELEMETRY_1": []}
+    for _ in range(round(1000 * seconds)):
+        board.advance(100_000)
+        seen(board.signals())
+        for _, identifier, *_, data in board.can_read():
+            name = messages.get_message_by_frame_id(identifier).name
+            if name in said:
+                said[name].append(messages.decode_message(identifier, data))
+    return said["STATUS"], said["TELEMETRY_1"]
+
+
+def test_at_rest_the_currents_are_0_and_said_to_be_unknown_while_the_sensors_read_some():
+    """There is no d and no q without an angle: what the sensors read of their noise is not broadcast as currents."""
+    plant = {"solver": {"method": "rk4"}, "adc": {"noise": 2.0}}
+    board = native.VirtualBoard(plant=plant, parameters={}, seed=1)
+    try:
+        board.can_open(500_000)
+        _broadcast(board, 1.0, lambda _: None)
+        read = []
+        status, telemetry = _broadcast(board, 1.0, lambda signals: read.append(signals["current_a"]))
+        assert len({value for value in read if value}) > 10
+        assert {(str(said["STATE"]), int(said["SPEED_KNOWN"])) for said in status} == {("ready", 0)}
+        assert len(telemetry) > 10
+        assert {(said["CURRENT_D"], said["CURRENT_Q"]) for said in telemetry} == {(0.0, 0.0)}
+
+        board.serial_write(b"start free\r")
+        _broadcast(board, 1.0, lambda _: None)
+        status, telemetry = _broadcast(board, 0.2, lambda _: None)
+        assert {(str(said["STATE"]), int(said["SPEED_KNOWN"])) for said in status} == {("run", 1)}
+        assert any(said["CURRENT_D"] for said in telemetry) and any(said["CURRENT_Q"] for said in telemetry)
+    finally:
+        board.close()
+
+
 def test_python_can_starts_and_stops_the_motor(board):
     messages = drive_can.database()
     alive = 0
