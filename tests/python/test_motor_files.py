@@ -284,9 +284,14 @@ LEFT = "start_current 10 A", "if_current 8 A", "polarity_current 3 A", "speed_al
 def test_what_neither_follows_nor_is_stated_is_named_with_the_default_that_holds(native, tmp_path):
     """By unit: no list of names to forget one in; what is off by default, or follows from a parameter, is not named."""
     (tmp_path / "pump.toml").write_text(SALIENT + "start_current = 4\n", encoding="utf-8")
-    (note,) = (line for line in told("check", tmp_path / "pump.toml").stdout.splitlines() if "nor implied" in line)
-    assert note.startswith("note   ")
+    lines = told("check", tmp_path / "pump.toml").stdout.splitlines()
+    (note,) = (line for line in lines if "by the machine's size" in line)
+    assert note.startswith("note   no rule says")
     assert [words in note for words in LEFT] == [False, True, True, True, True]
+    (other,) = (line for line in lines if "nor implied" in line)
+    assert other.startswith("note   ") and "hysteresis_band 0.4 A" in other
+    assert not any(words in other for words in LEFT)  # once is enough
+    note += other
     for name in ("observer_noise", "map_current", "weakening_limit", "id_low_speed", "overload_current", "drift_time"):
         assert f" {name} " not in note
 

@@ -7,7 +7,7 @@ import pytest
 
 import fake_core
 from stillspin import core, resources
-from stillspin.cases import profile
+from stillspin.cases import profile, similarity
 from stillspin.errors import InputError
 
 SCHEMA = core.plant_schema(fake_core)
@@ -161,7 +161,26 @@ def test_what_is_not_stated_is_said_and_what_the_drive_keeps_instead(native, tmp
     loaded = profile.load("ideal", core.plant_schema(native), core.parameters(native), str(pump(tmp_path)))
     assert "mechanics.inertia is not stated; the drive keeps inertia = 0.000284375 kgm2" in loaded.not_stated
     assert "parameters.speed_limit is not stated; the drive keeps speed_limit = 3300 rpm" in loaded.not_stated
-    assert len(loaded.not_stated) == 4  # and friction, and the rated current
+    assert len(loaded.not_stated) == 5  # and friction, the rated current, and what goes by the size
+    needed, _, kept = loaded.not_stated[-1].partition("; the drive keeps ")
+    assert needed.endswith("without machine.rated_peak_current, mechanics.inertia")
+    named = {row.split()[0]: float(row.split()[1]) for row in kept.split(", ")}
+    known = core.at_scale(core.parameters(native), loaded.parameters)  # of a board whose sensors read up to 8 A
+    assert named == pytest.approx({name: known[name].default for name in similarity.RULES}, rel=1e-5)
+    assert not set(named) & set(loaded.parameters)  # the drive is told nothing of them
+    assert named.items() >= {"start_current": 2.5, "if_current": 2.0, "polarity_current": 0.75}.items()
+
+
+def test_with_the_size_known_or_the_parameter_stated_nothing_of_the_size_is_left(native, tmp_path):
+    text = PUMP + "start_current = 2.0\n"
+    loaded = profile.load("ideal", core.plant_schema(native), core.parameters(native), str(pump(tmp_path, text)))
+    assert " if_current 2 A" in loaded.not_stated[-1]
+    assert " start_current " not in loaded.not_stated[-1]
+    text = PUMP.replace("[link]", "rated_peak_current = 4.0\n[mechanics]\ninertia = 1e-3\n[link]")
+    loaded = profile.load("ideal", core.plant_schema(native), core.parameters(native), str(pump(tmp_path, text)))
+    assert not any("no rule says" in words for words in loaded.not_stated)
+    assert not any("if_current" in words for words in loaded.not_stated)
+    assert set(loaded.by_rule) >= {"start_current", "if_current", "polarity_current"}
 
 
 @pytest.mark.parametrize("motor", MOTORS)
@@ -172,5 +191,7 @@ def test_the_motors_that_ship_leave_nothing_out(native, motor):
 def test_a_run_says_on_the_terminal_what_is_not_stated(call, tmp_path):
     result = call("run", "A10", "--motor", pump(tmp_path), "--profile", "ideal", "--no-plots")
     assert "stillspin: motor pump: mechanics.inertia is not stated; the drive keeps inertia" in result.stderr
+    assert "motor pump: no rule says what goes by the machine's size" in result.stderr
+    assert ", speed_alpha 12.5 A2s2" in result.stderr
     page = next(tmp_path.glob("results*/report.html")).read_text(encoding="utf-8")
     assert "mechanics.inertia is not stated" in page

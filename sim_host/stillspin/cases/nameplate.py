@@ -7,7 +7,7 @@ before what follows. What is stated nowhere is said: the drive keeps its default
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 from stillspin import core
@@ -97,6 +97,16 @@ def not_stated(plant: core.Plant, stated: Mapping[str, float], known: Mapping[st
         for where, name in open_
         if name in known
     )
+
+
+def without_size(plant: core.Plant, told: Collection[str], known: Mapping[str, Entry]) -> tuple[str, ...]:
+    """What no rule says because the machine's size is not known, and the defaults that the drive keeps, in words."""
+    missing = similarity.missing(plant)
+    kept = [known[name] for name in similarity.RULES if name in known and name not in told]
+    values = ", ".join(f"{entry.name} {entry.default:g} {entry.unit}".rstrip() for entry in kept)
+    if not (missing and values):
+        return ()
+    return (f"no rule says what goes by the machine's size without {', '.join(missing)}; the drive keeps {values}",)
 
 
 def by_rule(assumed: core.Plant, schema: core.Schema) -> tuple[str, ...]:

@@ -103,6 +103,7 @@ def load(
         machine.name,
         (
             *nameplate.not_stated(machine.plant, machine.parameters, known),
+            *nameplate.without_size(machine.plant, {**follows, **machine.parameters, **effects.parameters}, known),
             *nameplate.by_rule(machine.assumed, schema),
         ),
         tuple(name for name in sized if name not in effects.parameters),

@@ -148,6 +148,12 @@ def of(plant: core.Plant) -> Size | None:
     return Size(*values) if min(values) > 0.0 else None
 
 
+def missing(plant: core.Plant) -> list[str]:
+    """What a motor's file must say as well for its size to be known; empty where it is."""
+    asked = [(section, key) for section, keys in _NEEDED.items() for key in keys]
+    return [f"{section}.{key}" for section, key in asked if not float(plant.get(section, {}).get(key, 0.0)) > 0.0]
+
+
 def assumed(plant: core.Plant) -> core.Plant:
     """What no nameplate says, where a motor's file does not either: by rules, as for the motors of the catalogue.
 

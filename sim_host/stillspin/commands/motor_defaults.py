@@ -41,8 +41,7 @@ def notes(
         told: what the drive is told.
         by_rule: parameters among them that a rule says (cases/similarity.py).
     """
-    sized = similarity.RULES if similarity.of(plant) else {}
-    kept = {entry.name: float(entry.default) for entry in left(known.values(), {*told, *sized})}
+    kept = {entry.name: float(entry.default) for entry in left(known.values(), {*told, *similarity.RULES})}
     rows = (
         ("by rules, for a machine of this size", {name: told[name] for name in by_rule}),
         ("neither stated nor implied, so the drive's defaults, motor A's, hold", kept),
