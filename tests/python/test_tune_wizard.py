@@ -84,6 +84,7 @@ def test_a_motor_is_asked_for_checked_set_measured_and_saved(tmp_path, monkeypat
         assert len(late) > 10
         assert [row for row in late if abs(row[1] - row[2]) > HONEST * row[2]] == []
         assert "Every value is plausible and in use." in page.inner_text("#wizard")
+        assert "not by this page" not in page.inner_text("body")
         row = page.locator("#wizard tr", has_text="stator_resistance").inner_text()
         assert "0.25" in row
         assert "plausible, in use" in row

@@ -85,6 +85,7 @@ export class Run {
   /** Asks for something that runs the motor, and holds it. */
   hold(what, given = {}) {
     if (this.held || document.hidden) return;
+    this.asked = what;
     this.energised = false;
     this.begun = 0;
     this.beat = setInterval(() => this.link.say({ t: "hold" }), BEAT);
@@ -133,7 +134,7 @@ export class Run {
   /** It has stopped by itself, or never began. */
   ended({ fault, unheard }) {
     this.release();
-    if (fault) return; // said in the banner
+    if (fault || (this.asked === "commission" && !unheard)) return; // said in the banner, or by the commissioning
     this.events.note(
       unheard
         ? "The drive has stopped the motor by itself: it heard nothing for its link_timeout."
