@@ -11,7 +11,8 @@ import time
 
 
 def terminal(arguments, environment, seconds, size=(30, 100)):
-    """What a program draws on a terminal of that size."""
+    """What a program draws on a terminal of that size, whatever size the environment speaks of."""
+    environment = {name: value for name, value in environment.items() if name not in {"COLUMNS", "LINES"}}
     master, slave = pty.openpty()
     fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", *size, 0, 0))
     process = subprocess.Popen(

@@ -212,10 +212,12 @@ def test_a_parameter_leads_to_what_it_does_and_the_guide_is_a_click_away(tuned):
     heading = book.locator("h3#speed_ramp")
     heading.wait_for()
     assert book.evaluate("document.querySelector(':target').id") == "speed_ramp"
-    assert -1 < heading.bounding_box()["y"] < 100  # it is scrolled to a whole pixel
+    # A page is scrolled when it is laid out, to a whole pixel.
+    assert wait_until(lambda: -1 < heading.bounding_box()["y"] < 100, 20.0), heading.bounding_box()
     assert book.evaluate("document.documentElement.scrollWidth") == 1280
     tuned.click("#guide")  # into the tab that is open
     book.wait_for_selector("h1:has-text('Tuning by what you see')")
-    book.wait_for_function("[...document.images].every((image) => image.complete && image.naturalWidth > 0)")
+    pictures = "[...document.images].every((image) => image.complete && image.naturalWidth > 0)"
+    assert wait_until(lambda: book.evaluate(pictures), 20.0)  # not polled in the page, which forbids code from text
     book.set_viewport_size({"width": 390, "height": 844})
     assert book.evaluate("document.documentElement.scrollWidth") == 390
