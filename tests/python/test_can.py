@@ -33,7 +33,7 @@ BESIDE = {
     ("TELEMETRY_1", "CURRENT_D"): f"{UNKNOWN}, except in STATE start",
     ("TELEMETRY_1", "CURRENT_Q"): f"{UNKNOWN}, except in STATE start",
 }
-"""What the DBC says of fields beside their meaning; that the firmware sends them so is tested below."""
+"""What the DBC says of fields beside their meaning; that the firmware sends them so: test_can_unknown.py."""
 
 
 @pytest.fixture
@@ -278,47 +278,6 @@ def test_python_can_reads_status_that_cantools_decodes(board):
         assert bus.get_version(5.0) == (10, 13)
 
 
-def _told(board, bus, milliseconds):
-    """Each TELEMETRY_1 with the STATUS before and behind it where both say the same of state and flag."""
-    found, before, between = [], None, []
-    for _ in range(milliseconds):
-        board.advance(100_000)
-        for _, identifier, *_, data in board.can_read():
-            if identifier == 0x201:
-                between.append(bus.decode_message(identifier, data))
-            if identifier == 0x181:
-                behind = bus.decode_message(identifier, data)
-                if before and all(before[name] == behind[name] for name in ("STATE", "SPEED_KNOWN")):
-                    found += [{**before, **values} for values in between]
-                before, between = behind, []
-    return found
-
-
-def test_what_is_unknown_is_0_but_the_currents_of_a_start():
-    """The currents of a start are real: those of its test pulses are some amperes."""
-    periods = {"can_status_period": 2.0, "can_telemetry_period": 2.0}
-    board = native.VirtualBoard(plant={"solver": {"method": "rk4"}}, parameters=periods, seed=1)
-    bus = drive_can.database()
-    try:
-        board.can_open(500_000)
-        rows = _told(board, bus, 300)
-        board.serial_write(b"ref 300\rstart free\r")
-        rows += _told(board, bus, 800)
-        board.serial_write(b"coast\r")
-        rows += _told(board, bus, 100)
-    finally:
-        board.close()
-    unknown = [row for row in rows if not row["SPEED_KNOWN"]]
-    start = [row for row in unknown if str(row["STATE"]) == "start"]
-    rest = [row for row in unknown if str(row["STATE"]) != "start"]
-    run = [row for row in rows if row["SPEED_KNOWN"]]
-    assert min(map(len, (start, rest, run))) > 20
-    assert {row[name] for row in unknown for name in ("SPEED", "LOAD_TORQUE")} == {0}
-    assert {row[name] for row in rest for name in ("CURRENT_D", "CURRENT_Q")} == {0}
-    assert max(abs(row["CURRENT_Q"]) for row in start) > 1.0
-    assert max(row["SPEED"] for row in run) == pytest.approx(300.0, abs=15.0)
-
-
 def test_python_can_reads_and_writes_a_parameter(board):
     messages = drive_can.database()
     request = messages.get_message_by_name("PARAMETER_REQUEST")
@@ -340,43 +299,6 @@ def test_python_can_carries_records(board):
             record = joiner.feed(bytes(_wait_for(bus, 0x481).data))
         assert joiner.damaged == 0
         assert (record.kind, record.tag) == (0x81, 0x55)
-
-
-def _broadcast(board, seconds, seen):
-    """What STATUS and TELEMETRY_1 say for so long; `seen` is called every millisecond of it."""
-    messages = drive_can.database()
-    said = {"STATUS": [], "TELEMETRY_1": []}
-    for _ in range(round(1000 * seconds)):
-        board.advance(100_000)
-        seen(board.signals())
-        for _, identifier, *_, data in board.can_read():
-            name = messages.get_message_by_frame_id(identifier).name
-            if name in said:
-                said[name].append(messages.decode_message(identifier, data))
-    return said["STATUS"], said["TELEMETRY_1"]
-
-
-def test_at_rest_the_currents_are_0_and_said_to_be_unknown_while_the_sensors_read_some():
-    """There is no d and no q without an angle: what the sensors read of their noise is not broadcast as currents."""
-    plant = {"solver": {"method": "rk4"}, "adc": {"noise": 2.0}}
-    board = native.VirtualBoard(plant=plant, parameters={}, seed=1)
-    try:
-        board.can_open(500_000)
-        _broadcast(board, 1.0, lambda _: None)
-        read = []
-        status, telemetry = _broadcast(board, 1.0, lambda signals: read.append(signals["current_a"]))
-        assert len({value for value in read if value}) > 10
-        assert {(str(said["STATE"]), int(said["SPEED_KNOWN"])) for said in status} == {("ready", 0)}
-        assert len(telemetry) > 10
-        assert {(said["CURRENT_D"], said["CURRENT_Q"]) for said in telemetry} == {(0.0, 0.0)}
-
-        board.serial_write(b"start free\r")
-        _broadcast(board, 1.0, lambda _: None)
-        status, telemetry = _broadcast(board, 0.2, lambda _: None)
-        assert {(str(said["STATE"]), int(said["SPEED_KNOWN"])) for said in status} == {("run", 1)}
-        assert any(said["CURRENT_D"] for said in telemetry) and any(said["CURRENT_Q"] for said in telemetry)
-    finally:
-        board.close()
 
 
 def test_python_can_starts_and_stops_the_motor(board):
