@@ -129,14 +129,15 @@ static void load_modulation(drive_config_t* c) {
 // Q8. A window's slope changes per radian by (Yd - Yq) 2/3 U at a link U, and by Yq E with an EMF E. The observer
 // weighs it by what its model has of both, the map's end; the machine beyond may have an Lqq below Ldd, whose share
 // pulls the angle away. They balance where E = 2/3 U sqrt((l - 1)(1 - l')) with l = Lqq/Ldd there and l' at
-// current_limit, and E is twice that, for a 1 - l' of up to four times. l' is not measured: 1/Lqq is taken to rise on
-// with the square of the current.
+// current_limit, and E is twice that, for a 1 - l' of up to four times. l' is not measured: a 1/Lqq that rises is taken
+// to rise on with the square of the current.
 static int16_t freed_by_q8(const machine_map_t* map, int32_t sixth_q30) {
   const machine_point_t* const end = &map->points[MACHINE_MAP_SEGMENTS];
   const int32_t yqq0_q30 = map->points[0].yqq_q30;
   const int32_t reach_q12 = q_div(parameters.current_limit, parameters.map_current, 12);
-  const int32_t gained_q30 = qc_mul_sat(end->yqq_q30 - yqq0_q30, qc_mul_sat(reach_q12, reach_q12, 16), 8);
-  const int32_t above_q24 = q_div(end->ydd_q30, end->yqq_q30, 24) - ONE_Q24;
+  const int32_t risen_q30 = q_max(end->yqq_q30 - yqq0_q30, 0);
+  const int32_t gained_q30 = qc_mul_sat(risen_q30, qc_mul_sat(reach_q12, reach_q12, 16), 8);
+  const int32_t above_q24 = q_max(q_div(end->ydd_q30, end->yqq_q30, 24) - ONE_Q24, 0);
   const int32_t below_q24 = q_max(ONE_Q24 - q_div(end->ydd_q30, qc_add_sat(yqq0_q30, gained_q30), 24), 0);
   const int32_t root_q24 = (int32_t)q_sqrt64((uint64_t)q_product(above_q24, below_q24));
   return (int16_t)(q_clamp(q_div(root_q24, sixth_q30, 14), 384, 24575) / 3 * 4);
@@ -254,10 +255,4 @@ packed_text_t drive_config_make(void) {
 void drive_config_take(drive_config_t* c) {
   *c = made;
   for (uint16_t k = 0; edition_config_parts[k] != NULL; k++) edition_config_parts[k]->take();
-}
-
-bool drive_config_load(drive_config_t* c) {
-  const bool fits = drive_config_make() == PACKED_NONE;
-  if (fits) drive_config_take(c);
-  return fits;
 }

@@ -12,6 +12,10 @@ packed_text_t drive_config_make(void);
 /// What was made last is in use from here on, with the features' parts of it: no control interrupt comes in between.
 void drive_config_take(drive_config_t* c);
 /// Both; false, with the old one kept, when they do not fit together.
-bool drive_config_load(drive_config_t* c);
+static inline bool drive_config_load(drive_config_t* c) {
+  const bool fits = drive_config_make() == PACKED_NONE;
+  if (fits) drive_config_take(c);
+  return fits;
+}
 
 #endif

@@ -6,6 +6,7 @@
 #include "firmware/config/config.h"
 #include "firmware/config/rules.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/reset.h"
 #include "firmware/drive/steps.h"
 #include "firmware/interfaces/config_part.h"
 #include "firmware/interfaces/service.h"
@@ -45,8 +46,7 @@ static void reload(void) {
   drive.control.current_limit_q20 = interlock_current_limit();
   drive_command_speed(drive_commanded_speed());  // in the units of the new configuration
   if (!drive_is_energised()) {
-    drive.model = drive.config.nameplate;
-    drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);
+    drive_machine_reset();
     set_up_parts();
     if (drive.config_valid) drive.config_valid = hal_pwm_set_dead_band(drive_dead_band_ticks());
   }

@@ -18,6 +18,11 @@
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 
+void drive_machine_reset(void) {
+  drive.model = drive.config.nameplate;
+  drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);
+}
+
 void drive_reset(void) {
   clear(&drive, sizeof drive);
   sampling_reset();
@@ -33,10 +38,9 @@ void drive_reset(void) {
   drive.source = drive_source_selected();
   drive.config_valid = drive_config_load(&drive.config);
   drive.control.current_limit_q20 = interlock_current_limit();
-  drive.model = drive.config.nameplate;
+  drive_machine_reset();
   drive.control.per_torque_constant = q_invert(machine_torque_constant_q24(&drive.model, 0));
   sampling_scale_sensors(&drive, &drive.samples);
-  drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);
   drive_modulation_reset(&drive.modulation);
   position_preset(&drive, 0, 0);
 }

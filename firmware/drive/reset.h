@@ -11,6 +11,9 @@ extern "C" {
 /// does it first.
 void drive_reset(void);
 
+/// The machine is what the configuration says, and the speed control's constants are made of it.
+void drive_machine_reset(void);
+
 #if defined(__cplusplus)
 }
 #endif

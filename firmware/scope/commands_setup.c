@@ -10,13 +10,14 @@
 #include "firmware/scope/sub_commands.h"
 #include "firmware/text/packed_text.h"
 #include "firmware/text/text.h"
+#include "hal/qmath/qcall.h"
 #include "hal/qmath/qmath.h"
 
 #define EDGES 6u
 
 #define REACH(unit, bits) (uint16_t)(UNIT_##unit | (bits) << 8)
 
-// Bits of a record's word before its point, by what the quantities of a drive reach: 32 A, 512 V, 8192 rpm.
+// Bits of a signal that a record drops, by what the quantities of a drive reach: 32 A, 512 V, 8192 rpm.
 static uint16_t shift_of(const signal_info_t* s) {
   static const uint16_t reach[] = {REACH(NONE, 7), REACH(A, 5),  REACH(V, 9),       REACH(RPM, 13),
                                    REACH(TURN, 0), REACH(NM, 5), REACH(A_PER_S, 18)};
@@ -48,19 +49,19 @@ bool scope_set_channels(const words_of_line_t* a, scope_setup_t* s) {
   return true;
 }
 
-static void refuse_level(const word_t* typed, const signal_info_t* signal) {
+static void refuse_level(const word_t* typed, const signal_info_t* signal, int32_t most) {
   octet_writer_t* const w = line_begin();
   put_word(w, typed);
   put_packed(w, SAY_is_not_between);
-  put_signal_value(w, signal, -INT32_MAX);
+  put_signal_value(w, signal, -most);
   put_packed(w, SAY_and);
-  put_signal_value(w, signal, INT32_MAX);
+  put_signal_value(w, signal, most);
   put_packed(w, SAY_nothing_changed);
   line_end_refused();
 }
 
 // A number in the signal's unit, and the unit when it is there; moves `k` behind them. False, and said, when it is
-// none.
+// none, or beyond what a record of the signal holds.
 static bool read_level(const words_of_line_t* a, uint16_t* k, const signal_info_t* signal, int32_t* raw) {
   decimal_t number;
   const word_t* const typed = &a->word[*k];
@@ -68,8 +69,9 @@ static bool read_level(const words_of_line_t* a, uint16_t* k, const signal_info_
     line_refused(SAY_scope_trigger_signal_rising_falling_either_a);
     return false;
   }
-  if (!decimal_raw(&number, signal_q(signal), raw)) {
-    refuse_level(typed, signal);
+  const int32_t most = qc_shl_sat(INT16_MAX, shift_of(signal));
+  if (!decimal_raw(&number, signal_q(signal), raw) || *raw > most || *raw < -most) {
+    refuse_level(typed, signal, most);
     return false;
   }
   (*k)++;

@@ -21,11 +21,11 @@ static struct {
   bool any_foreign;
   bool arrives;    // the memory has taken the job of reading a header
   uint16_t reads;  // of what is being read
-  slot_header_t headers[SLOTS];
-  store_report_t report;
-  uint16_t octets[SLOT_HEADER];
   bool candidate[SLOTS];
-  bool spoilt[SLOTS];            // something is there that is no valid slot
+  bool spoilt[SLOTS];  // something is there that is no valid slot
+  store_report_t report;
+  slot_header_t headers[SLOTS];
+  uint16_t octets[SLOT_HEADER];
   uint16_t before[SLOT_HEADER];  // the header as it was read the time before
 } self;
 

@@ -173,12 +173,12 @@ TEST_F(SpeedTask, ARotorThatIsFoundByItsSaliencyKeepsIt) {
 }
 
 // Where the map ends with the saliency, and a fall of Lqq that goes on turns its sign at the limit, the current is all
-// there at twice the EMF that balances it.
+// there at twice the EMF that balances it; an Lqq that rises turns nothing.
 TEST_F(SpeedTask, ASaliencyThatTurnsItsSignIsOutweighedFirst) {
   const double l_d = real(parameters.inductance_d, 20), l_q = real(parameters.inductance_q, 20);
   const double flux = real(parameters.magnet_flux, 28);
   const double even = kLink / 6.0 * (l_q - l_d) / (l_q + l_d) / flux;  // rad/s
-  for (const double last : {0.9, 0.8, 0.7}) {
+  for (const double last : {1.5, 0.9, 0.8, 0.7}) {
     const std::int32_t fall = raw(100.0 * (1.0 - last) / 4.0, 16), whole = raw(100.0, 16);
     parameters.lqq_1 = whole - fall;
     parameters.lqq_2 = whole - 2 * fall;
@@ -188,7 +188,7 @@ TEST_F(SpeedTask, ASaliencyThatTurnsItsSignIsOutweighedFirst) {
     parameters.current_limit = raw(12.0, 20);
     ASSERT_TRUE(drive_config_load(&inside::config()));
     inside::current_limit_q20() = raw(12.0, 20);
-    const double beyond = l_q / (1.0 + (1.0 / last - 1.0) * 4.0);
+    const double beyond = l_q / (1.0 + std::max(1.0 / last - 1.0, 0.0) * 4.0);
     const double above = last * l_q / l_d - 1.0, below = std::max(0.0, 1.0 - beyond / l_d);
     const double freed = std::max(2.0 * even, 4.0 / 3.0 * kLink * std::sqrt(above * below) / flux);
     EXPECT_EQ(freed > 2.0 * even, last < 0.9) << "else this shows nothing";

@@ -12,8 +12,8 @@
 static struct {
   word_t wanted;
   uint16_t kind;  // name_kind_t
-  packed_text_t near[MOST];
   uint16_t found;
+  packed_text_t near[MOST];
 } self;
 
 bool suggest_is_near(packed_text_t name, const word_t* word) {
