@@ -163,11 +163,8 @@ void drive_config_take(drive_config_t* c) {
 
 const config_part_t* const edition_config_parts[] = {&encoder_part, NULL};
 
-bool drive_config_load(drive_config_t* c) {
-  any_made(c);
-  any_parts();
-  return any_bool();
-}
+// Asked after power-on alone: of the defaults, which fit together.
+packed_text_t drive_config_make(void) { return PACKED_NONE; }
 
 packed_text_t parameter_conflict(void) { return any_bool() ? PACKED_NONE : any_up_to(PACKED_NONE - 1u); }
 
