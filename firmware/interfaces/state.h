@@ -48,6 +48,7 @@ typedef struct {
   bool wants_exclusive;  // the next period is for a decision alone
   bool caught;           // a rotor that turns: angle and speed in use are its own
   bool open_loop;        // a current vector turns the rotor: the position source runs, and is not used yet
+  bool unseen;           // no axis shows at rest: the shaft follows the current, and where it is, is not known
   bool spins;            // speed control and position source are at work, as in RUN
   bool frozen;           // the model does not follow the windows
   bool over;             // the power stage is open again, and the background level has the rest

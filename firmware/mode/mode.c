@@ -22,7 +22,7 @@ static bool sees_currents(const volatile drive_t* d) { return is_energised(d) &&
 uint16_t drive_known(const volatile drive_t* d) {
   const uint16_t beside = known_beside;
   if (!sees_currents(d)) return beside;
-  if (d->state == DRIVE_START && !d->flags.caught) return KNOWN_FRAME | beside;
+  if (d->flags.unseen || (d->state == DRIVE_START && !d->flags.caught)) return KNOWN_FRAME | beside;
   return KNOWN_ROTOR | KNOWN_FRAME | beside;
 }
 
@@ -35,7 +35,7 @@ int32_t drive_rpm_q16(const drive_t* d, int32_t speed_bpp) {
 }
 
 static void begin(drive_t* d, drive_state_t state) {
-  static const state_flags_t none = {DRIVE_BOOT, 0, false, false, false, false, false, false, false, false};
+  static const state_flags_t none = {DRIVE_BOOT, 0, false, false, false, false, false, false, false, false, false};
   d->state = state;
   d->flags = none;
   d->periods = 0;

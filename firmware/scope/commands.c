@@ -34,10 +34,15 @@ static bool stop(const words_of_line_t* a, scope_setup_t* s) {
 static const struct {
   packed_text_t word;
   bool (*obey)(const words_of_line_t* a, scope_setup_t* s);
-} sub_commands[] = {{SAY_channels, scope_set_channels}, {SAY_sub_trigger, scope_set_trigger},
-                    {SAY_sub_every, scope_set_every},   {SAY_sub_before, scope_set_before},
-                    {SAY_sub_mode, scope_set_mode},     {SAY_sub_arm, arm},
-                    {TEXT_COMMAND_NAME_stop, stop},     {SAY_sub_print, scope_print}};
+} sub_commands[] = {{SAY_channels, scope_set_channels},
+                    {SAY_sub_trigger, scope_set_trigger},
+                    {SAY_hysteresis, scope_set_hysteresis},
+                    {SAY_sub_every, scope_set_every},
+                    {SAY_sub_before, scope_set_before},
+                    {SAY_sub_mode, scope_set_mode},
+                    {SAY_sub_arm, arm},
+                    {TEXT_COMMAND_NAME_stop, stop},
+                    {SAY_sub_print, scope_print}};
 
 static scope_setup_t draft(void) {
   scope_setup_t s = *scope_setup_in_force();

@@ -49,34 +49,33 @@ bool scope_set_channels(const words_of_line_t* a, scope_setup_t* s) {
   return true;
 }
 
-static void refuse_level(const word_t* typed, const signal_info_t* signal, int32_t most) {
+// The words from k on: a number in the trigger's unit, no larger than what a record of it holds. False, and said, when
+// they are none.
+static bool read_level(const words_of_line_t* a, uint16_t k, const scope_setup_t* s, int32_t* raw) {
+  const signal_info_t* const signal = signal_info(s->trigger);
+  const int32_t most = qc_shl_sat(INT16_MAX, shift_of(signal));
+  decimal_t number;
+  word_t typed = words_from(a, k);
+  packed_text_t why = SAY_is_not_a_number_in;
+  const uint16_t length = number_with_unit(a, k, signal_unit(signal), &number);
+  if (length > 0u) {
+    typed.count = length;
+    why = SAY_is_outside_of;
+    if (signal_q(signal) == 0u && !decimal_is_whole(&number)) {
+      why = SAY_is_not_a_whole_number_in;
+    } else if (decimal_raw(&number, signal_q(signal), raw) && qc_abs_sat(*raw) <= most) {
+      return true;
+    }
+  }
   octet_writer_t* const w = line_begin();
-  put_word(w, typed);
-  put_packed(w, SAY_is_not_between);
-  put_signal_value(w, signal, -most);
-  put_packed(w, SAY_and);
+  put_word(w, &typed);
+  put_packed(w, why);
+  put_fixed(w, -most, signal_q(signal), signal_decimals(signal));
+  put_packed(w, SAY_to);
   put_signal_value(w, signal, most);
   put_packed(w, SAY_nothing_changed);
   line_end_refused();
-}
-
-// A number in the signal's unit, and the unit when it is there; moves `k` behind them. False, and said, when it is
-// none, or beyond what a record of the signal holds.
-static bool read_level(const words_of_line_t* a, uint16_t* k, const signal_info_t* signal, int32_t* raw) {
-  decimal_t number;
-  const word_t* const typed = &a->word[*k];
-  if (text_number(typed->text, typed->count, &number) != typed->count) {
-    line_refused(SAY_scope_trigger_signal_rising_falling_either_a);
-    return false;
-  }
-  const int32_t most = qc_shl_sat(INT16_MAX, shift_of(signal));
-  if (!decimal_raw(&number, signal_q(signal), raw) || *raw > most || *raw < -most) {
-    refuse_level(typed, signal, most);
-    return false;
-  }
-  (*k)++;
-  if (word_is(a, *k, signal_unit(signal))) (*k)++;
-  return true;
+  return false;
 }
 
 bool scope_set_trigger(const words_of_line_t* a, scope_setup_t* s) {
@@ -93,15 +92,17 @@ bool scope_set_trigger(const words_of_line_t* a, scope_setup_t* s) {
   if (!read_signal(&a->word[1], &s->trigger)) return false;
   s->edge = (scope_edge_t)edge;
   s->hysteresis = SCOPE_BY_SPAN;
-  const signal_info_t* const signal = signal_info(s->trigger);
-  uint16_t k = 3;
-  if (!read_level(a, &k, signal, &s->level)) return false;
-  if (k < a->count && edge < SCOPE_AT_ONCE) {
-    if (!read_level(a, &k, signal, &s->hysteresis)) return false;
-    s->hysteresis = q_max(s->hysteresis, 0);
+  return read_level(a, 3, s, &s->level);
+}
+
+bool scope_set_hysteresis(const words_of_line_t* a, scope_setup_t* s) {
+  if (a->count < 2u || s->edge >= SCOPE_AT_ONCE) {
+    line_refused(SAY_scope_hysteresis_width_of_an_edge);
+    return false;
   }
-  if (k < a->count) line_refused(SAY_the_level_is_in_the_signal_s);
-  return k >= a->count;
+  if (!read_level(a, 1, s, &s->hysteresis)) return false;
+  s->hysteresis = qc_abs_sat(s->hysteresis);
+  return true;
 }
 
 static bool read_whole(const word_t* typed, uint16_t least, uint16_t most, uint16_t* value) {

@@ -36,7 +36,9 @@ static void put_trigger(octet_writer_t* w, const scope_setup_t* s) {
     put_u8(w, ' ');
     put_signal_value(w, signal, s->level);
     if (s->hysteresis >= 0) {
+      put_packed(w, SAY_comma);
       put_packed(w, SAY_hysteresis);
+      put_u8(w, ' ');
       put_fixed(w, s->hysteresis, signal_q(signal), signal_decimals(signal));
     }
   } else {

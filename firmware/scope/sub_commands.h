@@ -11,6 +11,7 @@
 // commands_setup.c
 bool scope_set_channels(const words_of_line_t* a, scope_setup_t* s);
 bool scope_set_trigger(const words_of_line_t* a, scope_setup_t* s);
+bool scope_set_hysteresis(const words_of_line_t* a, scope_setup_t* s);
 bool scope_set_every(const words_of_line_t* a, scope_setup_t* s);
 bool scope_set_before(const words_of_line_t* a, scope_setup_t* s);
 bool scope_set_mode(const words_of_line_t* a, scope_setup_t* s);

@@ -124,6 +124,7 @@ TEST_F(Commissioning, AMachineWithoutSaliencyIsNotAskedForItsPolarity) {
       if (!at_once) continue;
       periods(3);
       EXPECT_TRUE(commissioning.uniform);
+      EXPECT_EQ(drive_known(&drive) & KNOWN_ROTOR, 0);
       EXPECT_TRUE(inside::loop_is_closed());
     }
   }

@@ -42,7 +42,7 @@ TEST_F(ConsoleScope, TheScopeFromWordsToNumbers) {
   EXPECT_TRUE(has(command("scope trigger now"), "first: scope channels"));
   EXPECT_TRUE(has(command("scope channels speed current_q angle"), "set"));
   EXPECT_TRUE(has(command("scope trigger speed rising 100 rpm"), "set"));
-  EXPECT_TRUE(has(command("scope trigger speed rising 100 A"), "rising|falling"));
+  EXPECT_TRUE(has(command("scope trigger speed rising 100 A"), "100 A is not a number"));
   EXPECT_TRUE(has(command("scope trigger speed up 100"), "rising|falling"));
   EXPECT_TRUE(has(command("scope every 2"), "set"));
   EXPECT_TRUE(has(command("scope every 0"), "nothing changed"));
@@ -110,15 +110,18 @@ TEST_F(ConsoleScope, ATriggerIsASignalAnEdgeAndALevel) {
   EXPECT_TRUE(has(command("scope trigger speed"), wants));
   EXPECT_TRUE(has(command("scope trigger speed rising"), wants));
   EXPECT_TRUE(has(command("scope trigger speed now 100"), wants)) << "now has no level";
-  EXPECT_TRUE(has(command("scope trigger speed rising 100x"), wants));
   EXPECT_TRUE(has(command("scope trigger sped rising 100"), "there is no signal 'sped': "));
-  EXPECT_TRUE(has(command("scope trigger speed rising 100 rpm now"), "rising|falling"));
-  EXPECT_TRUE(
-      has(command("scope trigger speed rising 40000"), "40000 is not between -8191.75 rpm and 8191.75 rpm: nothing"));
-  EXPECT_TRUE(has(command("scope trigger speed falling -8192"), "-8192 is not between"));
-  EXPECT_TRUE(has(command("scope trigger angle above -0.5 turn"), "-0.5 is not between -0.5000 turn and 0.5000 turn"));
-  EXPECT_TRUE(has(command("scope trigger state above 3e9"), "3e9 is not between -32767 and 32767: nothing"));
-  EXPECT_TRUE(has(command("scope trigger speed rising 1,5"), wants));
+  const std::string no_number =
+      " is not a number (point, no comma or space) in -8191.75 .. 8191.75 rpm: nothing changed";
+  for (const std::string typed : {"100x", "100 rpm now", "100 V", "1,5", "1 000", "1 000 rpm", "100 rpm 5"}) {
+    EXPECT_EQ(command("scope trigger speed rising " + typed), typed + no_number + "\r\n");
+  }
+  const std::string outside = " is outside of -8191.75 .. 8191.75 rpm: nothing changed";
+  EXPECT_TRUE(has(command("scope trigger speed rising 40000"), "40000" + outside));
+  EXPECT_TRUE(has(command("scope trigger speed falling -8192 rpm"), "-8192" + outside));
+  EXPECT_TRUE(has(command("scope trigger angle above -0.5 turn"), "-0.5 is outside of -0.5000 .. 0.5000 turn"));
+  EXPECT_TRUE(has(command("scope trigger state above 3e9"), "3e9 is outside of -32767 .. 32767: nothing"));
+  EXPECT_TRUE(has(command("scope trigger state rising 2.5"), "2.5 is not a whole number in -32767 .. 32767: nothing"));
   EXPECT_EQ(scope_setup_in_force()->edge, SCOPE_AT_ONCE) << "nothing of that was taken";
   EXPECT_TRUE(has(command("scope trigger speed above 100"), "set")) << "the unit may be left out";
   EXPECT_EQ(scope_setup_in_force()->edge, SCOPE_ABOVE);
@@ -127,18 +130,24 @@ TEST_F(ConsoleScope, ATriggerIsASignalAnEdgeAndALevel) {
   EXPECT_TRUE(has(command("scope"), "\r\ntrigger now, every 1,"));
 }
 
-TEST_F(ConsoleScope, AHysteresisMayStandBehindTheLevel) {
+TEST_F(ConsoleScope, AnEdgeHasAHysteresis) {
   (void)command("scope channels speed");
+  const std::string wants = "scope hysteresis <width>, for a trigger rising|falling|either";
+  EXPECT_TRUE(has(command("scope hysteresis 5"), wants)) << "of what is recorded at once";
   EXPECT_TRUE(has(command("scope trigger speed rising 100"), "set"));
   EXPECT_EQ(scope_setup_in_force()->hysteresis, SCOPE_BY_SPAN);
-  for (const char* words : {"100 5", "100 rpm 5", "100 5 rpm", "1e2 rpm 5.0 rpm"}) {
-    EXPECT_TRUE(has(command(std::string("scope trigger speed rising ") + words), "set")) << words;
-    EXPECT_EQ(scope_setup_in_force()->hysteresis, 5 << 16) << words;
-    EXPECT_EQ(scope_setup_in_force()->level, 100 << 16) << words;
+  for (const char* typed : {"5", "5 rpm", "5.0rpm", "-5"}) {
+    EXPECT_TRUE(has(command(std::string("scope hysteresis ") + typed), "set")) << typed;
+    EXPECT_EQ(scope_setup_in_force()->hysteresis, 5 << 16) << typed;
+    EXPECT_EQ(scope_setup_in_force()->level, 100 << 16) << typed;
   }
   EXPECT_TRUE(has(command("scope"), "\r\ntrigger speed rising 100.00 rpm, hysteresis 5.00, every 1,"));
-  EXPECT_TRUE(has(command("scope trigger speed rising 100 5 5"), "the level is in the signal's unit"));
-  EXPECT_TRUE(has(command("scope trigger speed above 100 5"), "the level is in the signal's unit")) << "has none";
+  EXPECT_TRUE(has(command("scope hysteresis 5 5"), "5 5 is not a number"));
+  EXPECT_TRUE(has(command("scope hysteresis"), wants));
+  EXPECT_EQ(scope_setup_in_force()->hysteresis, 5 << 16) << "nothing of that was taken";
+  EXPECT_TRUE(has(command("scope trigger speed above 100"), "set"));
+  EXPECT_TRUE(has(command("scope hysteresis 5"), wants));
+  EXPECT_EQ(scope_setup_in_force()->hysteresis, SCOPE_BY_SPAN) << "a trigger begins without";
 }
 
 TEST_F(ConsoleScope, NumbersAreWholeAndFitAWord) {

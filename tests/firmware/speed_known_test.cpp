@@ -63,6 +63,9 @@ TEST_F(SpeedKnown, InACommissioningUntilItsGatesAreOff) {
   NEEDS("commissioning");
   inside::state() = DRIVE_COMMISSION;
   expect(true, "it measures");
+  inside::flags().unseen = true;
+  expect(false, true, "the shaft follows the current");
+  inside::flags().unseen = false;
   inside::flags().over = true;
   expect(false, "the background level has the rest");
 }

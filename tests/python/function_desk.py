@@ -4,7 +4,7 @@ import importlib
 from typing import Any
 
 MS = 100_000  # ticks
-READY, RUN, FAULT = 2, 4, 6
+READY, RUN, FAULT, COMMISSION = 2, 4, 6, 7
 EMERGENCY, PRECHARGE, TEMPERATURE, OVERLOAD, BRAKE_RESISTOR, GATE_ENABLE, SELF_TEST = range(14, 21)
 LINK_HIGH = 4
 POWER_UP = 80  # ms to READY, parameters told, and the functions have seen them

@@ -179,7 +179,7 @@ def test_the_console_ends_with_1_when_the_drive_refuses(port, home):
     said = [line for line in result.stderr.splitlines() if "not saved" not in line]  # what others have set before
     assert said == [f"stillspin: not carried out: {line}" for line in lines[::2]]
     assert "stillspin 0.1.0" in result.stdout
-    assert "40000 is not between -8191.75 rpm and 8191.75 rpm: nothing changed" in result.stdout
+    assert "40000 is outside of -8191.75 .. 8191.75 rpm: nothing changed" in result.stdout
 
 
 def test_the_commands(port, home, tmp_path, monkeypatch):

@@ -7,7 +7,10 @@ import re
 from pathlib import Path
 
 import pytest
-from function_desk import FAULT, READY, RUN, Desk
+from function_desk import COMMISSION, FAULT, READY, RUN, Desk
+
+from stillspin import core
+from stillspin.cases import profile
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
 
@@ -98,3 +101,21 @@ def test_a_start_is_known_at_its_end(desk):
     assert not any(known)
     assert desk.board.signals()["speed_known"] == 1.0
     assert math.isclose(desk.board.signals()["speed"], desk.truth("speed"), abs_tol=30.0)
+
+
+def test_where_a_rotor_without_an_axis_is_while_it_is_measured_is_not_known():
+    native = core.load()
+    chosen = profile.load("bench", core.plant_schema(native), core.parameters(native), "B-SPM")
+    desk = Desk({**chosen.parameters, "emergency_stop": 1.0}, chosen.plant, wait=250)
+    desk.type("commission start free", 10)
+    assert desk.until(COMMISSION)
+    turning = []
+    for _ in range(200):
+        row = desk.board.signals()
+        assert row["state"] == COMMISSION
+        assert row["speed_known"] == row["speed"] == row["load_torque"] == 0.0
+        assert abs(row["current_d"]) + abs(row["current_q"]) > 0.0
+        turning.append(abs(desk.truth("speed")))
+        desk.wait(3)
+    assert max(turning) > 1.0
+    desk.board.close()
