@@ -35,8 +35,7 @@ static void compare_packed(packed_text_t text) {
 
 void prove_names(void) {
   any_word();
-  for (uint16_t k = 0; k < parameter_count(); k++) compare_packed(parameter_name(parameter_info(k)));
-  for (uint16_t k = 0; k < signal_count(); k++) compare_packed(signal_info(k)->name);
+  compare_packed((packed_text_t)any_from(0, (int32_t)PACKED_TEXTS - 1));
 }
 
 void prove_near(void) {
@@ -87,9 +86,13 @@ void prove_numbers(void) {
 }
 
 // Every text, to its end.
-void prove_packed(void) {
-  for (uint16_t text = 0; text < (uint16_t)PACKED_TEXTS; text++) {
+static void read_from(uint16_t first, uint16_t end) {
+  for (uint16_t text = first; text < end; text++) {
     packed_reader_t r = packed_reader((packed_text_t)text);
     while (packed_next(&r) != 0u) continue;
   }
 }
+
+void prove_packed(void) { read_from(0, PACKED_TEXTS / 2u); }
+
+void prove_packed_behind(void) { read_from(PACKED_TEXTS / 2u, PACKED_TEXTS); }

@@ -94,7 +94,8 @@ BESIDE = (
 TERMINAL = tuple(f"firmware/console/{name}.c" for name in ("console", "job", "editor", "output"))
 
 STORE = (
-    *("tests/prove/store.c", "firmware/dictionary/parameters.c", "firmware/api/status.c", OCTETS, CRC),
+    *("tests/prove/store.c", "firmware/dictionary/parameters.c", "firmware/text/text.c", "firmware/api/status.c"),
+    *(OCTETS, CRC),
     *("hal/qmath/qcall.c", "hal/qmath/qdiv.c", "hal/qmath/qquotient.c"),
     *(f"firmware/store/{name}.c" for name in ("reader", "scan", "slot", "store", "values", "writer")),
 )
@@ -104,13 +105,16 @@ KERNEL = (
 )
 SELFTEST = (
     *("tests/prove/selftest.c", "firmware/board/selftest.c", "firmware/board/flash_sum.c", "firmware/base/clear.c"),
-    *("firmware/dictionary/parameters.c", OCTETS, CRC, "hal/qmath/qdiv.c", "hal/qmath/qquotient.c"),
+    *("firmware/dictionary/parameters.c", "firmware/text/text.c", OCTETS, CRC),
+    *("hal/qmath/qcall.c", "hal/qmath/qdiv.c", "hal/qmath/qquotient.c"),
 )
 
 RESULTS = (
     *("tests/prove/results.c", "firmware/commissioning/solve.c", "firmware/commissioning/result.c"),
     *(
         "firmware/dictionary/parameters.c",
+        "firmware/text/text.c",
+        OCTETS,
         "firmware/mode/access.c",
         "estimators/inverse_inductance_tensor.c",
         "estimators/fit.c",
@@ -150,7 +154,7 @@ NUMBERS = (
     *("-eva-slevel-function", "put_digits:60,put_spaces_to:300"),
 )
 NAMES = (
-    *("-eva-min-loop-unroll", "200", "-eva-slevel", "4", "-eva-split-return", "auto"),
+    *("-eva-min-loop-unroll", "250", "-eva-slevel", "4", "-eva-split-return", "auto"),
     *("-eva-slevel-function", "suggest_is_near:400"),
 )
 ROUNDS = ("-eva-auto-loop-unroll", "40", "-eva-slevel", "20", "-eva-split-return", "full")
@@ -237,9 +241,9 @@ PARTS = (
     # A constant that does not fit its word would be another number, silently.
     eva("configuration", CONFIGURATION, (*READER, "-warn-signed-downcast"), f"{OF_QMATH},q_sat64,q_sat_bits"),
     # More rounds than there are texts. Results of one long walk cost half.
-    of_link("packed", TYPED, ("-eva-min-loop-unroll", "1200", "-eva-no-results")),
+    *(of_link(half, TYPED, ("-eva-min-loop-unroll", "1200", "-eva-no-results")) for half in ("packed", "packed_behind")),
     of_link("numbers", TYPED, NUMBERS, OF_QMATH, "put_packed"),
-    of_link("names", TYPED, NAMES, OF_QMATH),
+    of_link("names", TYPED, NAMES, OF_QMATH, "packed_reader,packed_next"),
     of_link("near", TYPED, NAMES, OF_QMATH, "packed_occurs,packed_reader,packed_next,packed_rest_is"),
     of_link(
         "editor",
@@ -309,20 +313,7 @@ PARTS = (
     ),
     # What is volatile has any bits, also where it is a truth value.
     of_link("chip", CHIP, ("-eva-auto-loop-unroll", "140", "-no-warn-invalid-bool"), OF_QMATH),
-    # In which phase a transfer is says which way its octets go.
-    of_link(
-        "devices",
-        DEVICES,
-        (
-            "-eva-auto-loop-unroll",
-            "140",
-            "-no-warn-invalid-bool",
-            "-eva-partition-value",
-            "phase",
-            "-eva-interprocedural-splits",
-        ),
-        OF_QMATH,
-    ),
+    of_link("devices", DEVICES, ("-eva-auto-loop-unroll", "140", "-no-warn-invalid-bool"), OF_QMATH),
     *(
         wp(name, ("hal/qmath/qdiv.c",), ("-wp-timeout", "20"), proved, headers)
         for name, proved, headers in (
@@ -335,5 +326,5 @@ PARTS = (
     ),
 )
 # What takes longest begins first: nobody waits for it alone at the end.
-LONGEST = ("layouts", "interrupt", "names", "requests", "numbers")
+LONGEST = ("layouts", "packed", "packed_behind", "interrupt", "requests", "numbers")
 PROVED = frozenset(function for part in PARTS for function in part.proved)
