@@ -38,7 +38,7 @@ def value(table, name, **signals):
 
 def test_the_formulas(table):
     currents = {"current_d": -2.0, "current_q": 3.0}
-    assert value(table, "torque", **currents) == pytest.approx(1.5 * 4 * (0.15 + 0.002 * 2) * 3)
+    assert value(table, "torque", speed_known=1.0, **currents) == pytest.approx(1.5 * 4 * (0.15 + 0.002 * 2) * 3)
     assert value(table, "current_share", **currents) == pytest.approx(10 * math.sqrt(13))
     assert value(table, "power", voltage_d=10.0, voltage_q=20.0, **currents) == pytest.approx(1.5 * 40)
     assert value(table, "current_c", current_a=-2.0, current_b=0.5) == pytest.approx(1.5)
@@ -46,10 +46,20 @@ def test_the_formulas(table):
 
 def test_what_is_not_known_of_the_rotor_is_empty(table):
     choice = Choice(["speed", "link_voltage", "torque"], table)
-    row = choice.row(tuple(310.0 if name == "link_voltage" else math.nan for name in choice.streamed), MOTOR)
+    known = {"link_voltage": 310.0, "speed_known": 0.0}
+    row = choice.row(tuple(known.get(name, math.nan) for name in choice.streamed), MOTOR)
     assert math.isnan(row[0])
     assert row[1] == 310.0
     assert math.isnan(row[2])
+
+
+def test_while_a_start_does_not_know_the_rotor_its_currents_make_power_and_no_torque(table):
+    """They are those of the frame of the control, whose axes lie where the start has put them."""
+    starting = {"current_d": 2.0, "current_q": 3.0, "speed_known": 0.0, "voltage_d": 10.0, "voltage_q": 20.0}
+    choice = Choice(["torque", "power", "current_share", "current_q"], table)
+    row = choice.row(tuple(starting[name] for name in choice.streamed), MOTOR)
+    assert math.isnan(row[0])
+    assert row[1:] == pytest.approx([1.5 * 80, 10 * math.sqrt(13), 3.0])
 
 
 def test_more_than_the_drive_streams_is_refused_in_words(table):

@@ -37,6 +37,8 @@ def _phase_c(signals: Values, _: Values) -> float:
 
 
 def _torque(signals: Values, parameters: Values) -> float:
+    if signals["speed_known"] == 0:  # the currents are those of a frame that need not be the rotor's, as in a start
+        return math.nan
     saliency = (parameters["inductance_d"] - parameters["inductance_q"]) * 1e-3
     flux = parameters["magnet_flux"] + saliency * signals["current_d"]
     return 1.5 * parameters["pole_pairs"] * flux * signals["current_q"]
@@ -66,9 +68,10 @@ DERIVED = {
         Derived(
             "torque",
             "Nm",
-            _DQ,
+            (*_DQ, "speed_known"),
             _TORQUE,
-            "torque of the magnet and the saliency: 1.5 p (magnet_flux + (L_d - L_q) i_d) i_q, saturation not counted",
+            "torque of the magnet and the saliency: 1.5 p (magnet_flux + (L_d - L_q) i_d) i_q, saturation not counted; "
+            "empty while the rotor's angle is unknown",
             _torque,
         ),
         Derived(
