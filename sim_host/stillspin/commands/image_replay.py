@@ -60,6 +60,7 @@ def _octets(texts: list[str]) -> list[Octets]:
 def _firmware(profile_name: str, motor: str, seed: int) -> NativeBoard:
     native = core.load()
     chosen = profile.load(profile_name, core.plant_schema(native), core.parameters(native), motor)
+    profile.say_not_stated(chosen)
     return power.power(native, chosen, profile.Changes(), seed)
 
 
@@ -70,6 +71,7 @@ def _job(identifier: str, only: str | None, image: Image | None, where: tuple[st
     profile_name, motor, seed = where
     schema, known = core.plant_schema(native), core.parameters(native)
     chosen = profile.load(profile_name, schema, known, motor or scenario.motor)
+    profile.say_not_stated(chosen)
     settings = Settings(chosen, profile.Changes(), seed, revision(), image=image)
     jobs = {job.run.name: job for job in execute.prepare(scenario, settings, native)}
     name = only or next(iter(jobs))

@@ -169,10 +169,15 @@ class _Looked:
 def _jobs(scenarios: Sequence[str], image: Image, profile_name: str, motor: str | None, seed: int) -> list[Job]:
     native = core.load()
     schema, known = core.plant_schema(native), core.parameters(native)
+    chosen = [(scenario, motor or scenario.motor) for scenario in map(scenario_file.load, scenarios)]
+    motors = dict.fromkeys(name for _, name in chosen)
+    plates = {name: profile.load(profile_name, schema, known, name) for name in motors}
+    for plate in plates.values():
+        profile.say_not_stated(plate)
     jobs: list[Job] = []
-    for scenario in map(scenario_file.load, scenarios):
-        chosen = profile.load(profile_name, schema, known, motor or scenario.motor)
-        jobs += execute.prepare(scenario, Settings(chosen, profile.Changes(), seed, revision(), image=image), native)
+    for scenario, name in chosen:
+        settings = Settings(plates[name], profile.Changes(), seed, revision(), image=image)
+        jobs += execute.prepare(scenario, settings, native)
     return jobs
 
 

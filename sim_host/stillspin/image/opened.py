@@ -96,6 +96,7 @@ def power_on(image: Image, profile_name: str, motor: str, seed: int) -> NativeBo
     """
     native = core.load()
     chosen = profile.load(profile_name, core.plant_schema(native), core.parameters(native), motor)
+    profile.say_not_stated(chosen)
     return power_with(native, image, chosen, seed)
 
 

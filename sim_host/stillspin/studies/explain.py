@@ -67,6 +67,7 @@ def carry_out(scenario: Scenario, options: Options) -> Explanation:
         schema,
         known,
     )
+    profile.say_not_stated(worlds.own)
     listed = [item for item in by_mark(effects.load(schema, known), options.only, "effect") if worlds.differs(item)]
     told = commission.load(options.params, known, worlds.own.parameters) if options.params else None
     execute.prepare(scenario, _settings(worlds.own, options.seed, told or {}), native)  # complains at once
