@@ -252,6 +252,13 @@ def test_who_leaves_is_told_what_is_not_saved(sit_down, fake):
     assert "not saved" not in other.seen
 
 
+def test_the_line_at_the_bottom_has_no_number_for_what_nothing_asks_for(sit_down, fake):
+    fake.reference = 1200.0  # what a coast has left
+    person = sit_down()
+    assert person.sees("unknown: the shaft may be turning, reference –"), person.seen
+    assert "reference 1200" not in person.seen
+
+
 @pytest.mark.parametrize("way", ["\x04", "exit\r", signal.SIGTERM, signal.SIGHUP, None])
 def test_every_way_out_stops_the_motor(sit_down, fake, way):
     person = sit_down()

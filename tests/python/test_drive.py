@@ -100,6 +100,7 @@ def test_status_signals_and_words(drive):
     assert wait_until(lambda: drive.status().speed > 590, 2)
     status = drive.status()
     assert (status.state, status.limits, status.reference) == ("run", ("current",), 600.0)
+    assert status.reference_text == "600.0 rpm"
     assert drive.signals("current_q", "angle") == {"current_q": 2.0, "angle": -0.25}
     drive.stop()
     assert wait_until(lambda: not drive.status().energised, 2)
@@ -111,6 +112,7 @@ def test_with_the_power_stage_off_nothing_of_the_rotor_is_a_number(fake, drive):
     assert (status.state, status.speed_known) == ("ready", False)
     assert math.isnan(status.speed)
     assert status.speed_text == "speed unknown: the shaft may be turning"
+    assert status.reference_text == "–"
     seen = drive.signals("speed", "angle", "current_q", "link_voltage")
     assert [math.isnan(value) for value in seen.values()] == [True, True, True, False]
     with drive.stream(["speed", "speed_known", "link_voltage"], 0.005) as stream:

@@ -153,11 +153,13 @@ def test_an_unknown_speed_is_said_and_looked_at_on_command(page, server, fake):
     page.goto(server.address)
     page.wait_for_selector("#state:has-text('ready')")
     page.wait_for_selector("#shaft:has-text('the shaft may be turning')")
-    assert page.inner_text("#speed") == "–"
+    assert page.inner_text("#speed") == page.inner_text("#now-reference") == "–"
     page.click("#look")
     page.wait_for_selector("#note:has-text('the shaft turns at 1059 rpm')")
     page.check("#keep")
     page.click("#hold")
     page.wait_for_selector("#state.on")
     page.wait_for_selector("#shaft", state="hidden")
+    assert page.inner_text("#now-reference").endswith(" rpm")
     page.keyboard.press("Escape")
+    page.wait_for_selector("#now-reference:text-is('–')")

@@ -16,6 +16,7 @@ from stillspin.commands.completion import Words
 from stillspin.commands.console_session import Session
 from stillspin.commands.transcript import Transcript, as_sent
 from stillspin.drive import Drive
+from stillspin.drive.state import Status
 from stillspin.link.errors import DriveError
 
 _REFRESH = 0.5
@@ -85,6 +86,11 @@ def _wants_to_leave(current: Session) -> bool:
     return answer.startswith(("y", "k"))
 
 
+def _said(status: Status) -> str:
+    what = f"{status.state}: {status.fault}" if status.fault else status.state
+    return f"{what} | {status.speed_text}, reference {status.reference_text}"
+
+
 class _Bar:
     """The line at the bottom: what the drive does, asked for in records while the text goes on."""
 
@@ -115,8 +121,7 @@ class _Bar:
                 if self._drive.link.lost and self._session.app.is_running:
                     self._leave()
             else:
-                what = f"{status.state}: {status.fault}" if status.fault else status.state
-                self._text = f" {what} | {status.speed_text}, reference {status.reference:.1f} rpm"
+                self._text = f" {_said(status)}"
             self._session.app.invalidate()
 
 

@@ -90,7 +90,7 @@ class Status:
     speed_known: bool
     """False with the power stage off and until a start has found the rotor: the shaft may be turning."""
     reference: float
-    """rpm, after the ramp."""
+    """rpm, after the ramp; 0 with the power stage off, when nothing asks for a speed."""
     store: str
     """State of the parameter store."""
     unsaved: int | None
@@ -101,6 +101,11 @@ class Status:
     def speed_text(self) -> str:
         """The speed for people."""
         return f"{self.speed:.1f} rpm" if self.speed_known else "speed unknown: the shaft may be turning"
+
+    @property
+    def reference_text(self) -> str:
+        """What speed is asked for, for people; a dash where none is."""
+        return f"{self.reference:.1f} rpm" if self.energised else "–"
 
     @property
     def fault_text(self) -> str:

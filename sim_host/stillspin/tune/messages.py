@@ -45,7 +45,7 @@ def status_message(status: Status) -> Message:
         "limits": list(status.limits),
         "speed": for_page(status.speed),
         "speed_known": status.speed_known,
-        "reference": status.reference,
+        "reference": status.reference if status.energised else None,
         "store": status.store,
         "unsaved": status.unsaved_count or status.unsaved_text,
         "unheard": bool(raw.link & _GUARD_STOPPED),

@@ -191,7 +191,7 @@ export class Run {
     state.textContent = status.state;
     state.className = `pill ${status.number === FAULT ? "bad" : status.energised ? "on" : ""}`;
     by("speed").textContent = number(status.speed, 1);
-    by("now-reference").textContent = `${number(status.reference, 1)} rpm`;
+    by("now-reference").textContent = status.reference === null ? "–" : `${number(status.reference, 1)} rpm`;
     by("limits").textContent = status.limits.join(", ") || "nothing";
     by("store").textContent = [status.store, status.unsaved].filter(Boolean).join("; ");
     by("time").textContent = span(status.time);
