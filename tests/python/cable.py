@@ -24,11 +24,11 @@ class Cable:
         self._thread.start()
 
     def plug(self):
-        self._master, slave = os.openpty()
-        tty.setraw(slave)
-        os.set_blocking(self._master, False)
-        self._slave = slave
-        Path(self.port).symlink_to(os.ttyname(slave))
+        master, self._slave = os.openpty()
+        tty.setraw(self._slave)
+        os.set_blocking(master, False)  # before the thread reads from it
+        self._master = master
+        Path(self.port).symlink_to(os.ttyname(self._slave))
 
     def pull(self):
         with self._lock:

@@ -12,6 +12,7 @@ from desk import board, needs_board
 
 from stillspin.drive import Drive
 from stillspin.drive.requester import wait_until
+from stillspin.tune import connection
 from stillspin.tune.server import Server
 
 SLOW = 60
@@ -136,6 +137,27 @@ def test_a_cable_that_is_pulled_at_the_computer_and_put_back(home, page):
         assert page.input_value("#level") == "77"  # what was set up on the page is still there
         assert "is gone" in page.text_content("#events")
         run(page)
+
+
+def test_a_cable_that_was_put_back_is_tried_at_once_when_a_person_asks(page, fake, tmp_path, monkeypatch):
+    """By itself the server would try it again in an hour."""
+    monkeypatch.setattr(connection, "_AGAIN", 3600.0)
+    with Cable(fake.port, tmp_path) as cable:
+
+        def opened():
+            return Drive.open(f"serial://{cable.port}", timeout=0.3)
+
+        with opened() as drive, Server(drive, reopen=opened) as server:
+            page.goto(server.address)
+            ready(page)
+            not_known(page, cable.pull)
+            page.wait_for_selector("#lost:has-text('there is no serial port')")
+            cable.plug()
+            time.sleep(1.5)
+            assert page.inner_text("#state") == "not known"
+            page.click("#again")
+            ready(page)
+            assert page.is_hidden("#lost")
 
 
 @needs_board
