@@ -67,6 +67,11 @@ class Entry:
         """Of a number."""
         return Range(self.minimum, self.maximum, self.unit, self.whole)
 
+    @property
+    def _takes_words(self) -> bool:
+        """Whether true and false stand for 1 and 0."""
+        return self.access != "" and self.range.is_switch
+
     @cached_property
     def schema(self) -> Json:
         """The JSON schema of its value; its unit stands in the description, too, as editors show that."""
@@ -79,7 +84,7 @@ class Entry:
         given = (("minimum", self.minimum), ("maximum", self.maximum), ("unit", self.unit or None))
         number |= {key: value for key, value in given if value is not None}
         others: list[Json] = [{"enum": list(self.choices)}] if self.choices else []
-        others += [{"type": "boolean"}] if self.access else []  # a parameter takes true for 1
+        others += [{"type": "boolean"}] if self._takes_words else []
         return {**words, "anyOf": [number, *others]} if others else {**words, **number}
 
     def read(self, typed: str, where: str) -> Value:
@@ -91,7 +96,7 @@ class Entry:
         if typed in self.choices or isinstance(self.default, str):
             return self.check(typed, where)
         word = {"true": True, "false": False}.get(typed.lower())
-        if isinstance(self.default, bool) or (word is not None and self.access):
+        if isinstance(self.default, bool) or (word is not None and self._takes_words):
             return self.check(typed if word is None else word, where)
         if self.choices and not typed.lstrip("+-.")[:1].isdigit():
             return self.check(typed, where)

@@ -1,7 +1,8 @@
 """Numbers as people type them, read by one rule everywhere: digits, one point, an exponent; no comma, no space.
 
 What is whole stays whole: 2.5 pole pairs are refused, 2.0 and 1e1 are whole numbers. The unit may stand behind a number
-where it is the right one. Every complaint names the value as it was typed, the range that holds, and what sets it.
+where it is the right one. Of a switch, and of nothing else, files and programs may say true for 1 and false for 0.
+Every complaint names the value as it was typed, the range that holds, and what sets it.
 """
 
 from __future__ import annotations
@@ -45,6 +46,11 @@ class Range:
     def _shown(self, bound: float) -> str:
         return shown(bound) if self.decimals is None else f"{bound:.{self.decimals}f}"
 
+    @property
+    def is_switch(self) -> bool:
+        """Whether it is 0 or 1, for which a file and a program may say false or true."""
+        return self.whole and (self.low, self.high) == (0, 1)
+
     def read(self, typed: object, name: str) -> float:
         """The number that somebody typed, or that a program gives, in `unit`.
 
@@ -84,7 +90,7 @@ class Range:
         return float(number), unit
 
     def _given(self, value: object, name: str) -> float:
-        if isinstance(value, bool) or not isinstance(value, int | float):
+        if not isinstance(value, int | float) or (isinstance(value, bool) and not self.is_switch):
             raise InputError(f"{name}: {value!r} is no number; {self}")
         return float(value)
 

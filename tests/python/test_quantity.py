@@ -63,6 +63,8 @@ def test_whole_numbers_may_be_written_as_any_number(typed, number):
         (CURRENT, "1e999", "1e999 A is no number"),
         (CURRENT, float("inf"), "inf A is no number"),
         (CURRENT, True, "True is no number"),
+        (POLES, True, "True is no number; 1 … 20"),
+        (Range(0, 1), True, "True is no number; 0 … 1"),
         (CURRENT, None, "None is no number"),
         (CURRENT, "", "'' is no number"),
         (CURRENT, "٣", "'٣' is no number"),
@@ -73,6 +75,11 @@ def test_a_complaint_has_the_value_as_typed_and_what_holds(allowed, typed, words
     with pytest.raises(InputError) as caught:
         allowed.read(typed, "pole_pairs" if allowed is POLES else "current_limit")
     assert words in str(caught.value)
+
+
+def test_true_and_false_are_a_switch_s_1_and_0():
+    switch = Range(0, 1, whole=True)
+    assert [switch.read(given, "mtpa") for given in (True, False, 1, 0.0, "1")] == [1, 0, 1, 0, 1]
 
 
 @given(st.text(string.digits + ".,eE+- A", max_size=12))
