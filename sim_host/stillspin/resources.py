@@ -1,4 +1,4 @@
-"""Where the scenario, profile and motor files are: inside the installed package, or beside it in the source tree."""
+"""Where scenarios, profiles, motors and the book are: inside the installed package, or beside it in the source tree."""
 
 from __future__ import annotations
 
@@ -26,6 +26,27 @@ def directory(name: str) -> Path:
         if candidate.is_dir():
             return candidate
     raise FileNotFoundError(f"the directory '{name}' is missing from the installation of stillspin at {PACKAGE}")
+
+
+def book() -> Path:
+    """The folder of the book's pages.
+
+    Raises:
+        FileNotFoundError: the installation is damaged.
+    """
+    for candidate in (PACKAGE / "docs", PACKAGE.parents[1] / "docs"):
+        if (candidate / "index.md").is_file():
+            return candidate
+    raise FileNotFoundError(f"the book's pages are missing from the installation of stillspin at {PACKAGE}")
+
+
+def page(name: str) -> str:
+    """Where a page of the book is, for people: its path, from where they are when it lies below."""
+    try:
+        found, here = book() / f"{name}.md", Path.cwd()
+    except FileNotFoundError:  # of these, or of the folder that they are in: what is said beside it matters more
+        return f"{name}.md"
+    return str(found.relative_to(here) if found.is_relative_to(here) else found)
 
 
 def names(kind: str) -> list[str]:

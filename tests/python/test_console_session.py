@@ -9,6 +9,7 @@ import time
 
 import pytest
 
+from stillspin import resources
 from stillspin.drive.requester import wait_until
 from stillspin.exit_codes import ExitCode
 
@@ -43,7 +44,7 @@ class Person:
         os.set_blocking(self._master, False)
         self.seen = ""
         assert self.sees("Ctrl-D leaves"), self.seen
-        assert self.sees("docs/tuning.md"), self.seen
+        assert self.sees(f"what you see: {resources.page('tuning')};"), self.seen
         assert self.sees(DRAWS), self.seen
 
     def _look(self):

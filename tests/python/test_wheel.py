@@ -13,6 +13,7 @@ import desk
 import pytest
 from desk import needs_board
 from empty_environment import Environment, closure
+from test_pages_named import PAGES
 from typer.testing import CliRunner
 
 import stillspin
@@ -137,6 +138,13 @@ def test_the_page_is_served_from_the_wheel(client, board):
                     assert len(answer.read()) > 1000
         finally:
             running.terminate()
+
+
+def test_the_pages_that_the_client_names_are_in_the_wheel(client):
+    said = client.run("python", "-c", f"from stillspin import resources as r; print(*map(r.page, {PAGES}), sep='\\n')")
+    paths = [Path(line) for line in said.stdout.splitlines()]
+    assert [path.stem for path in paths] == PAGES, said.stderr
+    assert all(path.is_file() and not path.is_relative_to(ROOT) for path in paths), paths
 
 
 def test_a_tape_is_played_into_a_board_without_the_virtual_drive(client, tmp_path):

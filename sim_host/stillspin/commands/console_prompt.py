@@ -12,6 +12,7 @@ from prompt_toolkit.auto_suggest import AutoSuggestFromHistory
 from prompt_toolkit.history import FileHistory, History, InMemoryHistory
 from prompt_toolkit.patch_stdout import patch_stdout
 
+from stillspin import resources
 from stillspin.commands.completion import Words
 from stillspin.commands.console_session import Session
 from stillspin.commands.transcript import Transcript, as_sent
@@ -20,7 +21,6 @@ from stillspin.drive.state import Status
 from stillspin.link.errors import DriveError
 
 _REFRESH = 0.5
-_GUIDE = "which parameter to change for what you see: docs/tuning.md; 'stillspin tune' shows it, too"
 _LEAVE = {"exit", "quit"}
 _TWICE = 2.0
 """Seconds within which a second Ctrl-C asks whether to leave."""
@@ -46,7 +46,7 @@ def talk(drive: Drive, current: Session) -> None:
     thread = threading.Thread(target=bar.run, daemon=True)
     thread.start()
     print(f"{drive.version} on {drive.link.transport.name}; help lists what it understands, Ctrl-D leaves")
-    print(_GUIDE)
+    print(f"which parameter to change for what you see: {resources.page('tuning')}; 'stillspin tune' shows it, too")
     interrupted = -_TWICE
     with patch_stdout(), drive.link.listening(text=show):
         try:

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from stillspin import resources
 from stillspin.called import called
 from stillspin.counted import counted
 from stillspin.errors import InputError
@@ -106,7 +107,7 @@ def kernel_beside(file: Path) -> Path:
         if (file.parent / name).exists():
             return file.parent / name
     missing = file.parent / KERNEL_NAMES[0]
-    raise InputError(f"there is no flash kernel {missing}; give --kernel FILE (docs/flash.md)")
+    raise InputError(f"there is no flash kernel {missing}; give --kernel FILE ({resources.page('flash')})")
 
 
 def _port(text: str) -> str:

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from stillspin import resources
 from stillspin.board import image as on_board
 from stillspin.c28x.disassembler import disassemble
 from stillspin.commands import image_assemble, image_inject, image_replay, image_time, image_trace
@@ -74,7 +75,7 @@ def _say(there: Sequence[Section]) -> int:
     if in_rom:
         print(
             f"{', '.join(in_rom)}: tables of the boot ROM, which the virtual chip has not: they read as 0 unless "
-            "--rom FILE gives them; or link them into flash (docs/c28x.md)"
+            f"--rom FILE gives them; or link them into flash ({resources.page('c28x')})"
         )
     return filled.outside
 

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from stillspin import core, whole_file
+from stillspin import core, resources, whole_file
 from stillspin.commands.connection import DriveOption, opened, say_unsaved
 from stillspin.counted import counted
 from stillspin.drive import Drive, parameter_file
@@ -22,7 +22,8 @@ DRIVE = "drive"
 
 app = typer.Typer(
     cls=OneLineErrors,
-    help="The firmware's parameters: the table; dump, diff and load. What each one does: docs/parameters.md.",
+    help="The firmware's parameters: the table; dump, diff and load. What each one does:\n\n\b\n"
+    + resources.page("parameters"),
     rich_markup_mode=None,
 )
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stillspin import resources
 from stillspin.errors import InputError
 from stillspin.flash import demonstration, layout, rom, virtual
 from stillspin.flash import kernel as kernel_requests
@@ -117,12 +118,13 @@ def check_board(kernel: Kernel, line: Line, image: DriveImage) -> Info:
         words = f"{line.name}: the chip is locked by passwords: open it over JTAG; nothing was erased"
         raise RefusedError(words, kernel_requests.Status.LOCKED)
     if not info.has_boot_entry:
-        raise other("the board has no boot code in sector A: program it once over JTAG, see docs/flash.md")
+        raise other(f"the board has no boot code in sector A: program it once over JTAG, see {resources.page('flash')}")
     for block in image.resident:
         if kernel.crc(block.address, len(block.words)) != crc_of(block.words):
             raise other(
                 f"the image's sector A (boot code and resident part, from 0x{block.address:06X}) differs from the "
-                "board's, and sector A is never written here: program the whole image over JTAG, see docs/flash.md"
+                "board's, and sector A is never written here: program the whole image over JTAG, see "
+                f"{resources.page('flash')}"
             )
     return info
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TypeVar
 
+from stillspin import resources
 from stillspin.drive import describe
 from stillspin.drive.connect import connect
 from stillspin.drive.describe import Ask, Identity
@@ -61,8 +62,8 @@ def check_board(ask: Ask) -> Identity:
         more = [f"and {len(found) - _SHOWN} more"] if len(found) > _SHOWN else []
         raise DifferentError(
             f"the board is not built like the virtual drive: {'; '.join([*found[:_SHOWN], *more])}. No step was done. "
-            f"Flash an image of these sources for board {ours.board} (docs/flash.md), or use the stillspin that its "
-            "image was built with"
+            f"Flash an image of these sources for board {ours.board} ({resources.page('flash')}), or use the stillspin "
+            "that its image was built with"
         )
     return theirs
 

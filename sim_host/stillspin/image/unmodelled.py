@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
+from stillspin import resources
 from stillspin.core_board import NativeBoard
 from stillspin.core_code import Use
 from stillspin.counted import counted
@@ -81,14 +82,15 @@ def _words(part: str, used: _Used, names: Names, ran_away: int | None) -> str:
         return (
             f"the boot ROM was {used.counts()}, {where}. Its words (sine, root, inverse of TI's IQ library) are "
             "no part of the virtual chip and read as 0: what is made of them is wrong. Give them with --rom FILE, or"
-            " link IQmathTables into flash (docs/c28x.md)"
+            f" link IQmathTables into flash ({resources.page('c28x')})"
         )
     ending = f"was {used.counts()}, {where}. Reads give 0, writes are lost"
     if not part:
         return f"the chip has no memory at {_listed(address for address, _ in used.uses)}; it {ending}"
     if part == _REGISTERS:
         return f"no register is known at {_listed(address for address, _ in used.uses)}; it {ending}"
-    return f"{part} is not modelled ({_listed(address for address, _ in used.uses)}); it {ending} (docs/chip.md)"
+    page = resources.page("chip")
+    return f"{part} is not modelled ({_listed(address for address, _ in used.uses)}); it {ending} ({page})"
 
 
 def _register(address: int) -> str:

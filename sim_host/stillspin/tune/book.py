@@ -8,10 +8,8 @@ from pathlib import Path
 import markdown
 from aiohttp import web
 
-from stillspin.resources import PACKAGE
+from stillspin import resources
 
-_PLACES = (PACKAGE / "docs", PACKAGE.parents[1] / "docs")
-"""In the wheel; in the source tree."""
 _LINK = re.compile(r"(?<!!)\[([^\]]*)\]\((?!https?:|#)([^)#\s]*)[^)\s]*\)")
 _PAGE = """\
 <!doctype html>
@@ -33,21 +31,9 @@ _PAGE = """\
 """
 
 
-def folder() -> Path:
-    """Where the pages are.
-
-    Raises:
-        FileNotFoundError: the installation is damaged.
-    """
-    for place in _PLACES:
-        if (place / "tuning.md").is_file():
-            return place
-    raise FileNotFoundError(f"the book's pages are missing from the installation of stillspin at {PACKAGE}")
-
-
 def add_to(router: web.UrlDispatcher) -> None:
     """Serve the pages below /book, with their pictures."""
-    pages = folder()
+    pages = resources.book()
 
     async def give(request: web.Request) -> web.Response:
         page = pages / f"{request.match_info['name']}.md"
