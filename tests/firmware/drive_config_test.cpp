@@ -80,10 +80,6 @@ TEST_F(DriveConfig, DefaultsAreValidAndMotorAs) {
   EXPECT_NEAR(real(c.volts_per_code_q16, 16), 450.0 / 4096.0, 1.0 / 65536.0);
   EXPECT_NEAR(real(c.avv.bandwidth_long_q30, 30), 200.0 * kPeriod, 1e-8);
   EXPECT_NEAR(real(c.avv.bandwidth_short_q30, 30), 100.0 * kPeriod, 1e-8);
-  if (missing_of({"sources/paper"}).empty()) {
-    EXPECT_NEAR(real(paper_config.kp_q30, 30), 11.0 * kPeriod, 1e-8);
-    EXPECT_NEAR(real(paper_config.ki_q40, 40) / (1100.0 * kPeriod * kPeriod), 1.0, 1e-4);
-  }
   EXPECT_NEAR(real(c.observer.weight_q8, 8), 100.0, 0.01);  // 100 mA
   EXPECT_NEAR(real(c.observer.limit_q19, 19), 19.2, 0.01);
   EXPECT_NEAR(real(c.adapt_share_q30, 30), SCHEDULE_SLOTS * kPeriod / 150e-3, 1e-8);
@@ -93,6 +89,12 @@ TEST_F(DriveConfig, DefaultsAreValidAndMotorAs) {
   // torque per speed: B times mechanical rad/s per bpp
   EXPECT_NEAR(real(c.friction_per_bpp_q40, 40) / (m.friction / m.pole_pairs * kTurn / std::ldexp(kPeriod, 32)), 1.0,
               1e-3);
+}
+
+TEST_F(DriveConfig, DefaultsOfThePaperAreMotorAs) {
+  NEEDS("sources/paper");
+  EXPECT_NEAR(real(paper_config.kp_q30, 30), 11.0 * kPeriod, 1e-8);
+  EXPECT_NEAR(real(paper_config.ki_q40, 40) / (1100.0 * kPeriod * kPeriod), 1.0, 1e-4);
 }
 
 // Refused, and the configuration in use is left as it was.
