@@ -115,10 +115,11 @@ class Signal:
         """The raw value next to `value`; text may have the unit behind the number.
 
         Raises:
-            InputError: no number, or it does not fit into 32 bits.
+            InputError: no number, a fraction of what counts or stands for something, or it does not fit into 32 bits.
         """
         least, step = -(2.0 ** (31 - self.q)), 2.0**-self.q
-        held = Range(least, -least - step, self.unit, decimals=0, set_by="all that the signal holds")
+        whole = self.q == 0 and not self.unit
+        held = Range(least, -least - step, self.unit, whole, decimals=0, set_by="all that the signal holds")
         return round(held.read(value, self.name) * (1 << self.q))
 
 
