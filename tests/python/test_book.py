@@ -119,6 +119,19 @@ def test_a_table_of_figures_that_is_kept_by_hand_fails_the_check(page: str, line
     assert list(tables.by_hand(page)) == lines
 
 
+def test_a_table_that_differs_from_its_record_fails_the_check_and_a_record_of_older_sources_alone_does_not(
+    tree: Path,
+) -> None:
+    known = records.load(tree)["speed"]
+    records.keep(tree, "speed", known["command"], known["figures"], made_of="0" * 16)
+    assert "speed" in records.outdated(tree)
+    assert pieces.check(tree) == []
+    known["figures"]["5"]["plant"] *= 2
+    records.keep(tree, "speed", known["command"], known["figures"])
+    assert "speed" not in records.outdated(tree)
+    assert any("speed is stale: run toolchain/render.py" in finding.message for finding in pieces.check(tree))
+
+
 def test_a_picture_that_no_command_made_fails_the_check(tree: Path) -> None:
     images = tree / records.PICTURES
     images.mkdir(exist_ok=True)

@@ -241,7 +241,10 @@ PARTS = (
     # A constant that does not fit its word would be another number, silently.
     eva("configuration", CONFIGURATION, (*READER, "-warn-signed-downcast"), f"{OF_QMATH},q_sat64,q_sat_bits"),
     # More rounds than there are texts. Results of one long walk cost half.
-    *(of_link(half, TYPED, ("-eva-min-loop-unroll", "1200", "-eva-no-results")) for half in ("packed", "packed_behind")),
+    *(
+        of_link(half, TYPED, ("-eva-min-loop-unroll", "1200", "-eva-no-results"))
+        for half in ("packed", "packed_behind")
+    ),
     of_link("numbers", TYPED, NUMBERS, OF_QMATH, "put_packed"),
     of_link("names", TYPED, NAMES, OF_QMATH, "packed_reader,packed_next"),
     of_link("near", TYPED, NAMES, OF_QMATH, "packed_occurs,packed_reader,packed_next,packed_rest_is"),
