@@ -29,7 +29,7 @@ GROUPS = {
 }
 DRIVE = "firmware/mode/mode.h"  # says what the drive has
 _STATES = ("firmware/start/", "firmware/commissioning/")  # START and COMMISSION
-_FRESH = "firmware/drive/reset.c"  # the state after power-on
+_FRESH = "firmware/drive/reset.c"  # the state after power-on, and the machine of new parameters
 _SLICED = "firmware/hysteresis/hysteresis.c"  # in the place of windows
 # Each member by its path in the drive: the files and folders that write it.
 WRITERS: dict[str, tuple[str, ...]] = {
@@ -100,7 +100,6 @@ WRITERS: dict[str, tuple[str, ...]] = {
         "firmware/drive/inertia.c",
         "firmware/drive/hand_over.c",
         "firmware/start/",
-        "firmware/drive/reload.c",
         _FRESH,
     ),
     "control.weakening": ("firmware/drive/speed.c", "firmware/start/"),
@@ -117,7 +116,6 @@ WRITERS: dict[str, tuple[str, ...]] = {
         "firmware/sources/observer/learning.c",
         "firmware/drive/inertia.c",
         *_STATES,  # begin with the nameplate, and measure
-        "firmware/drive/reload.c",
         _FRESH,
     ),
     "trim": (
@@ -149,7 +147,7 @@ WRITERS: dict[str, tuple[str, ...]] = {
         "firmware/commissioning/spin.c",  # a rotor that only a current vector turns
         _FRESH,
     ),
-    "control.speed_ready": ("firmware/drive/reload.c", _FRESH),
+    "control.speed_ready": (_FRESH,),
     "control.current_limit_q20": ("firmware/drive/reload.c", "firmware/board/functions.c", _FRESH),
     # Asked for at background level, taken in the period.
     "request.start": ("firmware/mode/commands.c", "firmware/drive/sequence.c"),
