@@ -23,7 +23,8 @@ uint16_t drive_known(const volatile drive_t* d) {
   const uint16_t beside = known_beside;
   if (!sees_currents(d)) return beside;
   const drive_state_t state = d->state;
-  if (state != DRIVE_RUN && (d->flags.unseen || (state == DRIVE_START && !d->flags.caught))) return KNOWN_FRAME | beside;
+  if (state != DRIVE_RUN && (d->flags.unseen || (state == DRIVE_START && !d->flags.caught)))
+    return KNOWN_FRAME | beside;
   return KNOWN_ROTOR | KNOWN_FRAME | beside;
 }
 
