@@ -3,7 +3,6 @@
 import math
 import threading
 import time
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -364,17 +363,6 @@ def test_a_capture_has_units_and_time_from_the_trigger(drive):
 def test_what_is_wrong_with_a_capture_is_said(drive, options, said):
     with pytest.raises(InputError, match=said):
         drive.capture("speed", **options)
-
-
-def test_what_a_signal_counts_or_stands_for_is_whole_and_what_it_measures_is_not(drive):
-    state, speed = drive.table.signal("state"), drive.table.signal("speed")
-    assert [state.to_raw(value) for value in ("2", "2.0", 4)] == [2, 2, 4]
-    for value in ("2.5", 2.5):
-        with pytest.raises(InputError, match=r"state: 2\.5 is not a whole number"):
-            state.to_raw(value)
-    assert speed.to_raw("2.5 rpm") == 5 << 15
-    plain = replace(state, unit="Bd")  # a value in a unit, of which the drive has no fractions
-    assert plain.to_raw(2.6) == 3
 
 
 def test_a_commissioning_is_followed_to_its_results(drive):

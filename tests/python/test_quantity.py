@@ -1,6 +1,7 @@
 """Numbers as people type them: one rule for the client, the page, `--set` and files."""
 
 import string
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
@@ -90,3 +91,14 @@ def test_what_is_taken_is_what_python_reads_and_never_has_a_comma(typed):
         return
     assert "," not in typed
     assert number == float(typed.replace("A", ""))
+
+
+def test_what_a_signal_counts_or_stands_for_is_whole_and_what_it_measures_is_not(drive):
+    state, speed = drive.table.signal("state"), drive.table.signal("speed")
+    assert [state.to_raw(value) for value in ("2", "2.0", 4)] == [2, 2, 4]
+    for value in ("2.5", 2.5):
+        with pytest.raises(InputError, match=r"state: 2\.5 is not a whole number"):
+            state.to_raw(value)
+    assert speed.to_raw("2.5 rpm") == 5 << 15
+    plain = replace(state, unit="Bd")  # a value in a unit, of which the drive has no fractions
+    assert plain.to_raw(2.6) == 3
