@@ -52,7 +52,8 @@ void commissioning_hold(drive_t* d) {
 bool commissioning_align(drive_t* d) {
   commissioning_t* const c = &commissioning;
   if (c->tick == 0) {
-    c->uniform = d->flags.unseen = starting.uniform;
+    c->uniform = starting.uniform;
+    if (c->uniform) d->flags.unseen = KNOWN_ROTOR;
     d->control.references.closed = true;
     c->target_bam = d->position.selected.angle_bam;
     const uint32_t near_bam = c->target_bam + ((uint32_t)c->uniform << QUARTER_BITS);

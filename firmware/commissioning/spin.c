@@ -35,6 +35,7 @@ static void start_by_vector(drive_t* d) {
   d->source = position_sources[POSITION_OBSERVER];  // until the parameters are loaded again
   d->control.target_bpp = 0;
   drive_enter(d, DRIVE_START);
+  d->flags.unseen = KNOWN_ROTOR;
   d->flags.behind = DRIVE_COMMISSION;
   start_phases[START_IF_RAMP]->begin(d);
 }

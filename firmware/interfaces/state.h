@@ -42,13 +42,13 @@ typedef struct {
 /// What the state in hand says to the other steps. It alone sets these, and the next one begins with none of them.
 typedef struct {
   drive_state_t behind;  // START: what it leads to; READY: how the shaft turns is all that is asked
+  uint16_t unseen;       // KNOWN_ROTOR before a start has found it, and where no axis shows at rest; else 0
   uint16_t invalid;      // periods until the samples belong to a power stage that is on and to a known pattern
   bool gates_off;        // by the start, which has no current flow
   bool shorted;          // all lower devices on, in the place of the modulator's pattern
   bool wants_exclusive;  // the next period is for a decision alone
   bool caught;           // a rotor that turns: angle and speed in use are its own
   bool open_loop;        // a current vector turns the rotor: the position source runs, and is not used yet
-  bool unseen;           // no axis shows at rest: the shaft follows the current, and where it is, is not known
   bool spins;            // speed control and position source are at work, as in RUN
   bool frozen;           // the model does not follow the windows
   bool over;             // the power stage is open again, and the background level has the rest

@@ -22,10 +22,7 @@ static bool sees_currents(const volatile drive_t* d) { return is_energised(d) &&
 uint16_t drive_known(const volatile drive_t* d) {
   const uint16_t beside = known_beside;
   if (!sees_currents(d)) return beside;
-  const drive_state_t state = d->state;
-  if (state != DRIVE_RUN && (d->flags.unseen || (state == DRIVE_START && !d->flags.caught)))
-    return KNOWN_FRAME | beside;
-  return KNOWN_ROTOR | KNOWN_FRAME | beside;
+  return ((KNOWN_ROTOR | KNOWN_FRAME) ^ d->flags.unseen) | beside;
 }
 
 uint32_t drive_time_ms(void) { return drive.time_ms; }
@@ -37,7 +34,7 @@ int32_t drive_rpm_q16(const drive_t* d, int32_t speed_bpp) {
 }
 
 static void begin(drive_t* d, drive_state_t state) {
-  static const state_flags_t none = {DRIVE_BOOT, 0, false, false, false, false, false, false, false, false, false};
+  static const state_flags_t none = {DRIVE_BOOT, 0, 0, false, false, false, false, false, false, false, false};
   d->state = state;
   d->flags = none;
   d->periods = 0;

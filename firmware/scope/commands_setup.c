@@ -49,11 +49,14 @@ bool scope_set_channels(const words_of_line_t* a, scope_setup_t* s) {
   return true;
 }
 
-// The words from k on: a number in the trigger's unit, no larger than what a record of it holds. False, and said, when
-// they are none.
-static bool read_level(const words_of_line_t* a, uint16_t k, const scope_setup_t* s, int32_t* raw) {
+// The last words: the trigger's level or, without its sign, its hysteresis; no larger than what a record of it holds.
+// False, and said, when they are none.
+static bool read_level(const words_of_line_t* a, bool is_width, scope_setup_t* s) {
   const signal_info_t* const signal = signal_info(s->trigger);
   const int32_t most = qc_shl_sat(INT16_MAX, shift_of(signal));
+  const int32_t least = is_width ? 0 : -most;
+  const uint16_t k = is_width ? 1 : 3;
+  int32_t* const raw = is_width ? &s->hysteresis : &s->level;
   decimal_t number;
   word_t typed = words_from(a, k);
   packed_text_t why = SAY_is_not_a_number_in;
@@ -63,14 +66,14 @@ static bool read_level(const words_of_line_t* a, uint16_t k, const scope_setup_t
     why = SAY_is_outside_of;
     if (signal_q(signal) == 0u && !decimal_is_whole(&number)) {
       why = SAY_is_not_a_whole_number_in;
-    } else if (decimal_raw(&number, signal_q(signal), raw) && qc_abs_sat(*raw) <= most) {
+    } else if (decimal_raw(&number, signal_q(signal), raw) && *raw >= least && *raw <= most) {
       return true;
     }
   }
   octet_writer_t* const w = line_begin();
   put_word(w, &typed);
   put_packed(w, why);
-  put_fixed(w, -most, signal_q(signal), signal_decimals(signal));
+  put_fixed(w, least, signal_q(signal), signal_decimals(signal));
   put_packed(w, SAY_to);
   put_signal_value(w, signal, most);
   put_packed(w, SAY_nothing_changed);
@@ -92,7 +95,7 @@ bool scope_set_trigger(const words_of_line_t* a, scope_setup_t* s) {
   if (!read_signal(&a->word[1], &s->trigger)) return false;
   s->edge = (scope_edge_t)edge;
   s->hysteresis = SCOPE_BY_SPAN;
-  return read_level(a, 3, s, &s->level);
+  return read_level(a, false, s);
 }
 
 bool scope_set_hysteresis(const words_of_line_t* a, scope_setup_t* s) {
@@ -100,9 +103,7 @@ bool scope_set_hysteresis(const words_of_line_t* a, scope_setup_t* s) {
     line_refused(SAY_scope_hysteresis_width_of_an_edge);
     return false;
   }
-  if (!read_level(a, 1, s, &s->hysteresis)) return false;
-  s->hysteresis = qc_abs_sat(s->hysteresis);
-  return true;
+  return read_level(a, true, s);
 }
 
 static bool read_whole(const word_t* typed, uint16_t least, uint16_t most, uint16_t* value) {

@@ -39,6 +39,7 @@ static bool prepare(drive_t* d, drive_state_t behind) {
   drive_enter(d, DRIVE_START);
   d->flags.behind = behind;
   d->flags.gates_off = true;
+  d->flags.unseen = KNOWN_ROTOR;
   d->flags.invalid = 2;
   const drive_fault_t refusal = interlock_refusal();
   if (refusal != FAULT_NONE) drive_trip(d, refusal);

@@ -63,9 +63,9 @@ TEST_F(SpeedKnown, InACommissioningUntilItsGatesAreOff) {
   NEEDS("commissioning");
   inside::state() = DRIVE_COMMISSION;
   expect(true, "it measures");
-  inside::flags().unseen = true;
+  inside::flags().unseen = KNOWN_ROTOR;
   expect(false, true, "the shaft follows the current");
-  inside::flags().unseen = false;
+  inside::flags().unseen = 0;
   inside::flags().over = true;
   expect(false, "the background level has the rest");
 }
@@ -74,11 +74,22 @@ TEST_F(SpeedKnown, InACommissioningUntilItsGatesAreOff) {
 TEST_F(SpeedKnown, InAStartOnlyOnceAShaftThatTurnsIsCaught) {
   inside::state() = DRIVE_START;
   for (const bool caught : {false, true}) {
-    inside::flags().caught = caught;
+    inside::flags().unseen = caught ? 0 : KNOWN_ROTOR;
     inside::flags().invalid = 0;
     expect(caught, true, std::to_string(caught).c_str());
     inside::flags().invalid = 1;
     expect(false, "the windows are of before");
+  }
+}
+
+TEST_F(SpeedKnown, NotFromTheFirstPeriodOfAStartOn) {
+  parameters.flying_start = 0;
+  make_ready();
+  drive_command_start();
+  for (int n = 0; n < 8; ++n) {
+    period();
+    ASSERT_EQ(inside::state(), DRIVE_START);
+    EXPECT_EQ(drive_known(&drive) & KNOWN_ROTOR, 0) << n;
   }
 }
 

@@ -147,6 +147,7 @@ def test_noise_explains_the_error_of_an_ideal_plant_with_noise(tmp_path) -> None
     told = json.loads((out / "metrics.json").read_text(encoding="utf-8"))
     recorded = {records.read(path).about["firmware"] for path in (out / "runs").glob("*.parquet")}
     assert recorded == {told["firmware"]} == {own.firmware()}
+    assert "compiled with this package" in told["firmware"]
     rms = told["figures"]["position_error_rms"]
     assert set(told["effects"]) == {"adc-noise", "commissioning"}  # that is all there is
     assert rms["dominating"] == "adc-noise"

@@ -66,7 +66,7 @@ WRITERS: dict[str, tuple[str, ...]] = {
     "flags.wants_exclusive": ("firmware/start/",),
     "flags.caught": ("firmware/start/",),
     "flags.open_loop": ("firmware/start/",),
-    "flags.unseen": ("firmware/commissioning/",),
+    "flags.unseen": ("firmware/start/", "firmware/commissioning/"),
     "flags.spins": (*_STATES, "firmware/mode/mode.c"),
     "flags.frozen": ("firmware/commissioning/",),
     "flags.over": ("firmware/commissioning/",),

@@ -150,7 +150,7 @@ DEFECTS = (
         "start", "saturation_resistance_q24", "estimators/saturation.c", "return q_neg_sat(q_div(", "return -(q_div("
     ),
     Defect("commissioning", "take_off", "estimators/fit.c", "rest[FIT_POINTS]", "rest[FIT_POINTS - 1u]"),
-    Defect("packed", "next_code", "firmware/text/packed_text.c", "if (entry == SPELLED) skip_word(at);", ""),
+    Defect("packed_before", "next_code", "firmware/text/packed_text.c", "if (entry == SPELLED) skip_word(at);", ""),
     Defect("numbers", "put_digits", "firmware/text/text.c", "reversed[10]", "reversed[9]"),
     Defect("names", "goes_on_with", "firmware/text/packed_text.c", "k < count; k++) {", "k <= count; k++) {"),
     Defect("near", "suggest_is_near", "firmware/console/suggest/suggest.c", "if (left > 1u &&", "if (left > 0u &&"),

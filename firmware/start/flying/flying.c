@@ -37,6 +37,7 @@ static void begin_listen(drive_t* d) {
   start_power(d, false);
   d->flags.shorted = true;
   d->flags.caught = false;
+  d->flags.unseen = KNOWN_ROTOR;
   d->control.references.closed = false;
   start_enter(START_LISTEN);
 }
@@ -185,6 +186,7 @@ static void learn(drive_t* d) {
 
 static void begin_catch(drive_t* d) {
   d->flags.caught = true;
+  d->flags.unseen = 0;
   start_enter(START_CATCH);
 }
 

@@ -54,7 +54,11 @@ class Identity:
     @property
     def text(self) -> str:
         """All of it, for people and for the heads of files."""
-        made = f"edition {self.edition or 'unknown'}, board {self.board or 'unknown'}, {self.build}"
+        return self.built(self.build)
+
+    def built(self, how: str) -> str:
+        """`text` with other words for its commit, where those know more."""
+        made = f"edition {self.edition or 'unknown'}, board {self.board or 'unknown'}, {how}"
         return f"{self.version} ({made}, table {self.crc:08x})"
 
 

@@ -31,6 +31,9 @@ def virtual_ask() -> Iterator[Ask]:
 
 
 def firmware() -> str:
-    """Version, board file, build and table of the firmware, as a board in the loop tells them of its own."""
+    """Version, board file, build and table of the firmware, as a board in the loop tells them of its own.
+
+    What runs natively is no image with a commit of its own: it is compiled with this package, of the same sources.
+    """
     with virtual_ask() as ask:
-        return describe.identity(ask).text
+        return describe.identity(ask).built("compiled with this package")
