@@ -24,7 +24,7 @@ OF_WRITING = (
 )
 OF_DECIMALS = "text_number,decimal_raw,decimal_is_whole"
 OF_TYPING = f"{OF_DECIMALS},packed_occurs,packed_find,packed_equals,suggest_is_near"
-TEXTS = ("packed_before", "packed_middle", "packed_behind")
+EVERY_TEXT = ("packed_before", "packed_middle", "packed_behind")
 OF_LINES = "editor_octet,editor_next,editor_show"
 OF_RECORDS = "splitter_octet,splitter_rest,record_to_wire"
 OF_FRAMES = "segment_join,segment_split_begin,segment_split_peek,segment_split_advance"
@@ -242,7 +242,7 @@ PARTS = (
     # A constant that does not fit its word would be another number, silently.
     eva("configuration", CONFIGURATION, (*READER, "-warn-signed-downcast"), f"{OF_QMATH},q_sat64,q_sat_bits"),
     # More rounds than there are texts. Results of one long walk cost half.
-    *(of_link(third, TYPED, ("-eva-min-loop-unroll", "1200", "-eva-no-results")) for third in TEXTS),
+    *(of_link(third, TYPED, ("-eva-min-loop-unroll", "1200", "-eva-no-results")) for third in EVERY_TEXT),
     of_link("numbers", TYPED, NUMBERS, OF_QMATH, "put_packed"),
     of_link("names", TYPED, NAMES, OF_QMATH, "packed_reader,packed_next"),
     of_link("near", TYPED, NAMES, OF_QMATH, "packed_occurs,packed_reader,packed_next,packed_rest_is"),
@@ -327,5 +327,5 @@ PARTS = (
     ),
 )
 # What takes longest begins first: nobody waits for it alone at the end.
-LONGEST = ("layouts", *TEXTS, "interrupt", "requests", "numbers")
+LONGEST = ("layouts", *EVERY_TEXT, "interrupt", "requests", "numbers")
 PROVED = frozenset(function for part in PARTS for function in part.proved)
