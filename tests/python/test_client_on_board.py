@@ -94,6 +94,14 @@ def test_a_triggered_capture_shows_the_step_where_it_says(desk):
     assert capture.clipped == ()
 
 
+def test_a_motor_that_a_capture_runs_begins_when_the_records_before_the_trigger_are_there(desk):
+    """256 ms of them here; the reference passes its level some 100 ms behind the start."""
+    trigger = Trigger("speed_reference", 100, "rising")
+    capture = desk.capture("speed_reference", trigger=trigger, decimation=20, timeout=SLOW, run=600)
+    assert capture.time[0] == pytest.approx(-0.256)
+    assert np.nanmax(capture.signals["speed_reference"][capture.time < 0]) < 100
+
+
 def test_a_stream_comes_regularly_and_whole(desk):
     with desk.stream(["speed", "link_voltage"], period=0.01) as stream:
         samples = [stream.next(SLOW) for _ in range(100)]
@@ -218,6 +226,8 @@ def test_a_speed_beyond_the_limit_names_what_holds_now_and_what_sets_it(desk, ty
     words = str(typed).removesuffix(" rpm")
     assert str(caught.value) == f"speed: {words} rpm is out of range; -1200 … 1200 rpm (speed_limit)"
     assert desk.status().reference == before
+    with pytest.raises(InputError, match=r"speed: 'fast' is no number; -1200 … 1200 rpm \(speed_limit\)"):
+        desk.ref("fast")
 
 
 def test_pole_pairs_stay_whole_and_a_comma_is_no_point(desk):

@@ -71,6 +71,14 @@ def refer(page, rpm):
     page.press("#reference", "Enter")
 
 
+def colours(page, home):
+    """Of each signal that is plotted there: what it is drawn in."""
+    return {
+        value.get_attribute("data-value"): value.evaluate("b => b.parentNode.querySelector('.key').style.background")
+        for value in page.locator(f"{home} [data-value]").all()
+    }
+
+
 def change(page, name, value):
     page.click("[data-tab=parameters]")
     field = page.locator(f"[data-name={name}] input")
@@ -102,9 +110,13 @@ def test_a_motor_is_started_tuned_captured_and_its_fault_understood(tuned):
     tuned.locator("#level").blur()
     tuned.click("#capture")
     tuned.wait_for_selector("#scope-note.armed")  # the part before the trigger is recorded
+    assert tuned.inner_text("#scope-note") == "armed, waits for speed: it rises through 800 rpm"
+    of_live = colours(tuned, "#plots")
     refer(tuned, 1000)
     tuned.wait_for_selector("#captured canvas")
     assert "512 records every 0.4 ms" in tuned.inner_text("#scope-note")
+    assert len(of_live) > 1
+    assert {**of_live, **colours(tuned, "#captured")} == {**colours(tuned, "#captured"), **of_live}
     picture(tuned, "scope")
     tuned.click("[data-tab=live]")
     refer(tuned, 400)

@@ -41,6 +41,15 @@ def test_holding_the_button_runs_the_motor(tuned, fake):
     tuned.wait_for_selector("#state:has-text('ready')")
 
 
+def test_a_speed_that_is_refused_is_marked_until_another_is_taken(tuned):
+    tuned.fill("#reference", "1,000")
+    tuned.press("#reference", "Enter")
+    tuned.wait_for_selector("#reference.refused")
+    tuned.fill("#reference", "300")
+    tuned.press("#reference", "Enter")
+    tuned.wait_for_selector("#reference:not(.refused)")
+
+
 @pytest.mark.parametrize(("keep", "ends"), [(True, "press to stop"), (False, "let go to stop")])
 def test_the_button_says_no_more_of_the_motor_than_the_drive_has_said(tuned, fake, keep, ends):
     tuned.evaluate(

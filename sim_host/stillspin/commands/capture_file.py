@@ -97,7 +97,7 @@ def draw(capture: Capture) -> Figure:
                 panel.plot(capture.time * 1e3, capture.signals[name], color=colour, label=name)
             panel.axvline(0, color="#9aa3ad", linewidth=0.8, zorder=1)
             panel.set_ylabel(unit)
-            panel.legend(loc="upper right", ncols=len(names))
+            panel.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=len(names))
         panels[-1].set_xlabel("time from the trigger, ms")
     return figure
 

@@ -74,7 +74,8 @@ class Acquisition(Motion):
             decimation: control interrupts (100 µs) per record.
             pretrigger: share of the records before the trigger.
             timeout: s to wait for the trigger.
-            run: rpm at which the motor runs from when the scope is armed until the capture is done, as by `running`.
+            run: rpm at which the motor runs, as by `running`, from when the scope waits for its trigger (the records
+                in front of one are there by then) until the capture is done.
 
         Raises:
             DriveError: no trigger came, or the motor does not run.
@@ -84,6 +85,8 @@ class Acquisition(Motion):
             chosen, trigger or scope.Trigger(chosen[0].signal if chosen else ""), decimation, pretrigger
         )
         self.scope_arm(setup)
+        if run is not None and setup.trigger.edge != "now":
+            wait_until(lambda: self.scope_state().state != scope.FILLING, timeout + setup.duration)
         with nullcontext() if run is None else self.running(run):
             done = wait_until(lambda: self.scope_state().done, timeout + setup.duration)
         if not done:

@@ -12,6 +12,7 @@ from stillspin.drive.adjustment import Adjustment
 from stillspin.drive.protocol import HOLDERS, Command, StatusCode
 from stillspin.drive.requester import wait_until
 from stillspin.drive.state import ENERGISED, FAULT, RUN
+from stillspin.errors import InputError
 from stillspin.link.errors import DriveError, NoAnswerError, RefusedError
 from stillspin.quantity import Range
 
@@ -92,11 +93,13 @@ class Motion(Adjustment):
             InputError: no number, or beyond the drive's speed_limit.
             RefusedError: the drive says why not.
         """
-        wanted = Range(unit="rpm").read(speed, "speed")
         try:
+            wanted = Range(unit="rpm").read(speed, "speed")
             if abs(wanted) < _SPEED_MAX:
                 self.command(Command.SPEED, round(wanted * 2**16))
                 return
+        except InputError:  # said below, with the range that holds
+            pass
         except RefusedError as error:
             if error.status != StatusCode.RANGE:
                 raise

@@ -172,12 +172,27 @@ function nearest(times, time) {
   return low > 0 && time - times[low - 1] < times[low] - time ? low - 1 : low;
 }
 
+const COLOURS = 8;
+const colours = new Map(); // of each signal that was plotted: the same in every plot, as far as they reach
+
+function colourOf(name, taken) {
+  const free = (at) => !taken.has(at);
+  const all = [...Array(COLOURS).keys()];
+  const used = new Set(colours.values());
+  const own = colours.get(name);
+  const at = own !== undefined && free(own) ? own : (all.find((at) => free(at) && !used.has(at)) ?? all.find(free) ?? 0);
+  if (own === undefined) colours.set(name, at);
+  taken.add(at);
+  return `--line-${at + 1}`;
+}
+
 /** Panels that share a time axis, one for each unit, in `home`. Signals: [{name, unit}]. */
 export function panels(home, signals, make) {
   const units = [...new Set(signals.map((signal) => signal.unit))];
   home.replaceChildren();
+  const taken = new Set();
+  const members = signals.map((signal, at) => ({ ...signal, at, colour: colourOf(signal.name, taken) }));
   return units.map((unit) => {
-    const members = signals.map((signal, at) => ({ ...signal, at, colour: `--line-${(at % 8) + 1}` }));
     const own = members.filter((signal) => signal.unit === unit);
     const values = own.map((signal) => {
       const key = make("i", { class: "key" });

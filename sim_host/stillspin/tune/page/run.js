@@ -124,7 +124,11 @@ export class Run {
     if (this.referring) return;
     this.referring = this.link
       .ask("ref", { speed })
-      .catch(this.fail)
+      .then(() => by("reference").classList.remove("refused"))
+      .catch((error) => {
+        by("reference").classList.add("refused");
+        this.fail(error);
+      })
       .finally(() => {
         this.referring = null;
         if (this.wanted !== speed) this.refer(this.wanted);

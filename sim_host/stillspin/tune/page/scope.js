@@ -52,7 +52,7 @@ export class Scope {
     by("setup").replaceChildren(
       ...this.channels.map((select, at) => field(`Channel ${at + 1}`, select)),
       field("Trigger on", this.trigger),
-      field("when", this.edge),
+      field("When", this.edge),
       field("Level", this.level, this.unit),
       field("A record every", this.decimation, make("em", {}, "× 0.1 ms")),
       field("Before the trigger", this.before, make("em", {}, "%")),
@@ -82,6 +82,8 @@ export class Scope {
       decimation: this.decimation.value,
       before: this.before.value,
     };
+    const on = this.edge.value === "now" ? "" : `${this.trigger.value}: ${EDGES[this.edge.value]} ${this.level.value} ${this.unit.textContent}`;
+    this.waits = on && `waits for ${on.trim()}`;
     this.busy(true, "preparing");
     try {
       this.capture = await this.link.ask("capture", given);
@@ -94,7 +96,7 @@ export class Scope {
 
   follow(text, armed) {
     if (!by("capture").disabled) return;
-    by("scope-note").textContent = text;
+    by("scope-note").textContent = armed && this.waits ? `${text}, ${this.waits}` : text;
     by("scope-note").classList.toggle("armed", armed);
   }
 
