@@ -118,6 +118,7 @@ TEST_F(ConsoleScope, ATriggerIsASignalAnEdgeAndALevel) {
   }
   const std::string outside = " is outside of -8191.75 .. 8191.75 rpm: nothing changed";
   EXPECT_TRUE(has(command("scope trigger speed rising 40000"), "40000" + outside));
+  EXPECT_TRUE(has(command("scope trigger speed rising 8192"), "8192" + outside));
   EXPECT_TRUE(has(command("scope trigger speed falling -8192 rpm"), "-8192" + outside));
   EXPECT_TRUE(has(command("scope trigger angle above -0.5 turn"), "-0.5 is outside of -0.5000 .. 0.5000 turn"));
   EXPECT_TRUE(has(command("scope trigger state above 3e9"), "3e9 is outside of -32767 .. 32767: nothing"));

@@ -124,6 +124,14 @@ TEST_F(Hysteresis, BandStaysWithoutAFrequency) {
   EXPECT_EQ(band(), before);
 }
 
+TEST_F(Hysteresis, BandFollowsTheLowestFrequencyToo) {
+  parameters.hysteresis_frequency = raw(0.01, 16);  // less than one rise in 10 ms
+  use_parameters();
+  const double before = band();
+  for (int n = 0; n < 300; ++n) swinging_period(0.1, 0);
+  EXPECT_LT(band(), before);
+}
+
 TEST_F(Hysteresis, OverCurrentInOneSliceIsAFaultAndEndsIt) {
   slice(18.5, 0.0);  // trip_current is 18 A
   slice();

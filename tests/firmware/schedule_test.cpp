@@ -202,6 +202,9 @@ TEST_F(Schedule, BesideTheFieldOfACaughtShaftTheWindowsAreLeftOut) {
       EXPECT_EQ(s.skips, caught && s.task == TASK_FIELD);
     }
   }
+  inside::state() = DRIVE_RUN;
+  inside::flags().caught = true;
+  for (const schedule_t& s : next(20)) EXPECT_TRUE(s.turning && !(s.skips && s.task == TASK_FIELD));
 }
 
 // Its first look of all is not beside the model's slots.

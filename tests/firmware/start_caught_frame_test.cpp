@@ -62,6 +62,28 @@ TEST_F(StartCaught, ALoopThatIsClosedBeginsAnew) {
   EXPECT_TRUE(board.gates_on);
 }
 
+// Where no axis is asked for, the pulses' word is the last.
+TEST_F(StartCaught, WithoutAnAxisToSeeItRunsAsSoonAsTheWindowsAreItsOwn) {
+  catch_at(300.0, 1.0);
+  ASSERT_EQ(inside::start_found().phase, START_CATCH);
+  start_ways.open_loop = true;
+  start_state.step(&drive);
+  EXPECT_TRUE(board.gates_on);
+  inside::schedule().exclusive = true;
+  start_state.step(&drive);
+  EXPECT_EQ(inside::state(), DRIVE_START) << "its windows are of before";
+  inside::flags().invalid = 0;
+  inside::schedule().exclusive = false;
+  start_state.step(&drive);
+  EXPECT_EQ(inside::state(), DRIVE_START) << "not beside anything else";
+  EXPECT_TRUE(inside::flags().wants_exclusive);
+  EXPECT_NE(drive_known(&drive) & KNOWN_ROTOR, 0) << "it is caught";
+  inside::schedule().exclusive = true;
+  start_state.step(&drive);
+  EXPECT_EQ(inside::state(), DRIVE_RUN);
+  start_ways.open_loop = false;
+}
+
 // A fast shaft needs its field current from the first period on.
 TEST_F(StartCaught, AFastShaftIsWeakenedAtOnce) {
   catch_at(1500.0, 1.0);

@@ -98,6 +98,10 @@ TEST_F(Scales, ANumberBeyond31BitsOfFractionIsRead) {
   std::int32_t raw = 0;
   ASSERT_EQ(text_number(large, 3, &number), 3);
   EXPECT_FALSE(decimal_raw(&number, 40, &raw));
+  for (const std::int32_t digits : {5'000'000, -5'000'000}) {
+    number = {digits, 0};
+    EXPECT_FALSE(decimal_raw(&number, 40, &raw)) << "beyond the format before it is made";
+  }
 }
 
 }  // namespace
