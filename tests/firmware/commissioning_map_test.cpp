@@ -130,6 +130,27 @@ TEST_F(Phases, TheMapSumsItsGroups) {
   }
 }
 
+// At a quarter of the limit's levels there is nothing left to halve.
+TEST_F(Phases, AMapThatFindsNoSaliencyEndsAtAQuarterOfTheLimit) {
+  map_t& m = commissioning.map;
+  ASSERT_FALSE(step(commissioning_map));
+  m.most_q20 = parameters.current_limit;
+  const auto lose = [&] {
+    m.lost = m.pause = true;
+    m.judge = false;
+    m.tick = 2000;  // behind any pause
+    return step(commissioning_map);
+  };
+  for (const int share : {2, 4}) {
+    ASSERT_FALSE(lose());
+    EXPECT_EQ(m.most_q20, parameters.current_limit / share);
+    EXPECT_FALSE(m.lost);
+  }
+  EXPECT_TRUE(lose());
+  EXPECT_EQ(m.most_q20, parameters.current_limit / 4);
+  EXPECT_EQ(m.levels, 0);
+}
+
 // A segment is as long as a constant torque takes for six degrees: accel n^2, within what is short and long.
 TEST_F(Phases, ASegmentTakesTheShaftSixDegreesOn) {
   const map_t& m = commissioning.map;

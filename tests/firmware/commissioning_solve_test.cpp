@@ -153,6 +153,16 @@ TEST(CommissioningStaircase, LevelsThatLieOffAreNoLine) {
   EXPECT_LT(real(v.window_rms_q16, 16), 1e-2 * off) << "both scatter alike";
 }
 
+// A drop whose share goes with the current at every level cannot be told from a resistance.
+TEST(CommissioningStaircase, LevelsThatDoNotTellDropFromResistanceGiveNeither) {
+  const machine_model_t m = nameplate();
+  staircase_t s = climbed(m, 0.387, 0.5, -1.2);
+  for (staircase_level_t& l : s.level) l.factor = l.current;
+  const staircase_values_t v = staircase_solve(&s, &m);
+  EXPECT_FALSE(v.valid);
+  EXPECT_EQ(v.resistance_q24, 0);
+}
+
 // A link that gives way in proportion to the current is no resistance of the machine: the mean misses it once and the
 // windows twice, and what is taken for a drop is the same as without.
 TEST(CommissioningStaircase, TheSagOfTheLinkIsNoResistance) {

@@ -221,6 +221,19 @@ TEST_F(Commissioning, ItsEndRestoresTheConfigurationWhateverWasFound) {
   EXPECT_TRUE(inside::request().reload) << "nothing was measured, yet the longer settling has to go";
 }
 
+TEST_F(Commissioning, TheLongerSettlingStaysForOneThatWasAskedFor) {
+  commissioning.longer = false;
+  drive_command_commission();
+  inside::request().reload = false;
+  commissioning_service(&drive);
+  EXPECT_TRUE(commissioning.longer);
+  EXPECT_FALSE(inside::request().reload);
+  inside::request().begin = nullptr;  // it did not begin
+  commissioning_service(&drive);
+  EXPECT_FALSE(commissioning.longer);
+  EXPECT_TRUE(inside::request().reload);
+}
+
 // Played from a recording, the background's work is done where it was done, and not before.
 TEST_F(Commissioning, ATapeDecidesWhenTheBackgroundWorks) {
   begin();

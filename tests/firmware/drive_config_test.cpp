@@ -303,6 +303,9 @@ TEST_F(DriveConfig, TheStatorFluxNeedsAMachineThatItCanBeGiven) {
   EXPECT_EQ(parameter_conflict(), PACKED_NONE);
   set("flux_low", 600.0);
   EXPECT_NE(parameter_conflict(), PACKED_NONE);
+  parameters.flux_low = 1;  // in rpm Q16: less than the format of an electrical speed tells from nothing
+  parameters.flux_high = 2;
+  EXPECT_NE(parameter_conflict(), PACKED_NONE);
 }
 
 // Whatever was changed since counts at once, and nothing else is calculated again.

@@ -108,6 +108,21 @@ TEST_F(Sources, WhileAVectorIsTurnedTheTorqueIsThatOfTheAngleSeen) {
   EXPECT_EQ(inside::torque_accel_q8(), 0);
 }
 
+// The same of what windows have measured, by a source that is alone and by one of two.
+TEST_F(Sources, WhileAVectorIsTurnedTheTorqueIsThatOfTheWindowsToo) {
+  NEEDS("start/if_start", "sources/flux");
+  for (const int source : {POSITION_OBSERVER, POSITION_FLUX_CONV}) {
+    run_with(source);
+    inside::state() = DRIVE_START;
+    inside::flags().open_loop = true;
+    inside::start_found().phase = START_IF_RAMP;
+    for (int k = 0; k < 2; ++k) inside::windows()[k].current_q20 = raw_ab(Vector{4.0, 0.0}.turned(rad(kHere)), 20);
+    inside::seen().angle_bam = kHere + 0x40000000u;
+    estimate();
+    EXPECT_LT(inside::torque_accel_q8(), -raw(1000.0, 8)) << source;
+  }
+}
+
 // The model moves where the schedule says so or has its slot, and makes K of the rest in the look's slot.
 TEST_F(Sources, TheModelFollowsWhereItHasItsPeriod) {
   for (int slot = 0; slot <= SCHEDULE_SLOTS; ++slot) {
