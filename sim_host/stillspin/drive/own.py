@@ -36,4 +36,5 @@ def firmware() -> str:
     What runs natively is no image with a commit of its own: it is compiled with this package, of the same sources.
     """
     with virtual_ask() as ask:
-        return describe.identity(ask).built("compiled with this package")
+        own = describe.identity(ask)
+    return own.text if own.commit else own.built("compiled with this package")
