@@ -18,6 +18,7 @@ from typing import Any
 
 from stillspin.errors import CampaignError
 from stillspin.runs import cluster
+from stillspin.runs.held_interrupt import HeldInterrupt
 from stillspin.runs.reporting import listen, reporting
 
 _POLL = 0.1  # s between two looks at the progress of the workers
@@ -56,7 +57,14 @@ class Task:
 class Workers:
     """What a campaign has its work done by."""
 
-    def __init__(self, near: Executor, far: Executor, ahead: Callable[[], int], tell: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        near: Executor,
+        far: Executor,
+        ahead: Callable[[], int],
+        tell: Callable[[], None],
+        interrupt: HeldInterrupt,
+    ) -> None:
         """Of executors.
 
         Args:
@@ -64,8 +72,10 @@ class Workers:
             far: of whichever computers, may be the same.
             ahead: how many tasks may be with `far` at a time.
             tell: is called several times a second while something is under way.
+            interrupt: is heard as often.
         """
         self._near, self._far, self._ahead, self._tell = near, far, ahead, tell
+        self._interrupt = interrupt
 
     def finished(self, waiting: deque[Task]) -> Iterator[tuple[Task, Any]]:
         """Every task as it is done, with its result; more may come into `waiting` meanwhile, at either end.
@@ -89,6 +99,7 @@ class Workers:
                         break
                 done, _ = wait(pending, timeout=_POLL, return_when=FIRST_COMPLETED)
                 self._tell()
+                self._interrupt.hear()
                 for future in done:
                     yield pending.pop(future), future.result()
         except BrokenProcessPool as error:
@@ -112,13 +123,16 @@ def workers(where: Where, slots: int = 0, watch: Shares = lambda _: None) -> Ite
     with ExitStack() as held:
         shares = [0.0] * slots
         here: Executor = _Here()
-        ahead, tell = 1, lambda: watch(shares)
+        ahead, tell, interrupt = 1, lambda: watch(shares), HeldInterrupt()
+        if where.cluster:
+            far = held.enter_context(cluster.connected(where.cluster, shares))
+        if where.cluster or where.jobs > 1:
+            held.enter_context(interrupt)
         if where.jobs > 1:
             pool = held.enter_context(_Processes(where.jobs, slots))
             here, ahead, tell = pool, where.jobs, lambda: watch(list(pool.shares))
         if where.cluster:
-            far = held.enter_context(cluster.connected(where.cluster, shares))
-            yield Workers(here, far, far.ahead, lambda: watch(shares))
+            yield Workers(here, far, far.ahead, lambda: watch(shares), interrupt)
             return
 
         def told(slot: int, share: float) -> bool:
@@ -128,7 +142,7 @@ def workers(where: Where, slots: int = 0, watch: Shares = lambda _: None) -> Ite
             return True
 
         held.enter_context(reporting(told))
-        yield Workers(here, here, lambda: ahead, tell)
+        yield Workers(here, here, lambda: ahead, tell, interrupt)
 
 
 class _Here(Executor):
