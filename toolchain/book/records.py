@@ -18,13 +18,15 @@ SUFFIXES = {".c", ".h", ".cpp", ".hpp", ".toml", ".py", ".cmd", ".js", ".css", "
 PICTURES = "docs/images"
 DRIVE = ("control", "estimators", "firmware", "hal", "svpwm")
 # What decides a figure of a run: the drive, what it runs on, what is done with it, and how it is judged. Every such run
-# is of the drive's C made for this machine, so the core that runs an image's machine code has no part in it.
+# is of the drive's C made for this machine, so the core that runs an image's machine code has no part in it; nor has
+# which process carries a run out.
 RUNS = (
     *DRIVE,
     *(f"sim_host/{name}" for name in ("bench", "chip", "devices", "plant", "profiles", "scenarios", "schemes")),
     *(f"sim_host/motors/{name}.toml" for name in ("A", "B", "B-SPM")),
     *(f"sim_host/stillspin/{name}" for name in ("cases", "measure", "runs", "studies")),
     *(f"!sim_host/chip/{name}" for name in ("c28x", "code_cpu", "code_flash_library")),
+    *(f"!sim_host/stillspin/runs/{name}.py" for name in ("cluster", "held_interrupt", "reporting", "workers")),
 )
 # What a run of `stillspin` is made of beside these, by the record's name.
 BESIDE = {
