@@ -4,6 +4,10 @@
 
 #include "tests/control/quantities.hpp"
 
+extern "C" {
+#include "control/frame.h"
+}
+
 namespace {
 
 using stillspin::test::bam;

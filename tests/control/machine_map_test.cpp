@@ -282,6 +282,32 @@ TEST(MachineMap, TheTurningFrameSeesTheWholeCoupling) {
   }
 }
 
+// K is renewed later than the rest follows the current: what K and k0 make of that current stays what it was, and both
+// are then what a move at once would have made of them.
+TEST(MachineMap, ASensitivityThatIsRenewedLaterIsThatOfAMoveAtOnce) {
+  Saturated s;
+  s.k = 1e-4;
+  for (const double from : {-14.0, 3.5, 0.0}) {
+    for (const double to : {-7.0, 10.5, 14.0}) {
+      machine_model_t later = model_with(s, 14.0), at_once = later;
+      machine_model_move(&later, raw(from, 20));
+      machine_model_follow(&later, raw(to, 20));
+      const dq_t there = {0, raw(to, 20)};
+      const Vector before = real(machine_speed_sensitivity_q20(&later, there), 20);
+      machine_model_renew_sensitivity(&later);
+      const Vector after = real(machine_speed_sensitivity_q20(&later, there), 20);
+      machine_model_move(&at_once, raw(to, 20));
+      EXPECT_NEAR(after.x, before.x, 1e-5) << from << " to " << to;
+      EXPECT_NEAR(after.y, before.y, 1e-5) << from << " to " << to;
+      EXPECT_EQ(later.k_dd_q24, at_once.k_dd_q24);
+      EXPECT_EQ(later.k_dq_q24, at_once.k_dq_q24);
+      EXPECT_EQ(later.k_qd_q24, at_once.k_qd_q24);
+      EXPECT_NEAR(real(later.k0_q20.d, 20), real(at_once.k0_q20.d, 20), 5e-6) << from << " to " << to;
+      EXPECT_NEAR(real(later.k0_q20.q, 20), real(at_once.k0_q20.q, 20), 5e-6) << from << " to " << to;
+    }
+  }
+}
+
 TEST(MachineMap, ItsCurrentIsFromOneToAHundredAmperes) {
   const struct {
     std::int32_t current_q20;

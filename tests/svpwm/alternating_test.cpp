@@ -2,6 +2,10 @@
 
 #include "tests/svpwm/period.hpp"
 
+extern "C" {
+#include "svpwm/alternating.h"
+}
+
 namespace {
 
 using namespace stillspin::test;

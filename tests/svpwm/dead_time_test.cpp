@@ -147,4 +147,21 @@ TEST(DeadTime, AboveItsErrorACurrentIsCertain) {
   }
 }
 
+// At the error itself it is certain already, in both directions; the last current in doubt is one step of 2^-12 bands
+// below it.
+TEST(DeadTime, DoubtEndsJustBelowTheError) {
+  dead_time_config_t c = config();
+  c.band_q20 = raw(0.25, 20);
+  c.edge_band_q20 = raw(0.75, 20);
+  dead_time_design(&c);
+  const std::int32_t end_q12 = 3 * 4096;
+  for (const int sign : {1, -1}) {
+    EXPECT_TRUE(dead_time_is_in_doubt(&c, 0));
+    EXPECT_TRUE(dead_time_is_in_doubt(&c, sign * (end_q12 - 1)));
+    EXPECT_FALSE(dead_time_is_in_doubt(&c, sign * end_q12));
+    EXPECT_FALSE(dead_time_is_in_doubt(&c, sign * (end_q12 + 1)));
+    EXPECT_FALSE(dead_time_is_in_doubt(&c, sign > 0 ? INT32_MAX : INT32_MIN));
+  }
+}
+
 }  // namespace

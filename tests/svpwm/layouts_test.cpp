@@ -2,6 +2,11 @@
 
 #include "tests/svpwm/period.hpp"
 
+extern "C" {
+#include "svpwm/extended.h"
+#include "svpwm/pattern.h"
+}
+
 namespace {
 
 using namespace stillspin::test;
@@ -221,6 +226,20 @@ TEST(CheapestPair, IsLongAndNeedsTheLeastExtension) {
   EXPECT_GT(zero_pairs, 2000);
   EXPECT_GT(active_pairs, 200);
   EXPECT_GT(untouched, 500);
+}
+
+// What is not extended is not touched: along a leg's own direction the second vector has no time, and gets none.
+TEST(CheapestPair, AVectorWithoutTimeStaysWithoutIt) {
+  const extended_config_t c = {1800, 3000, 0};
+  for (int sixth = 0; sixth < 6; ++sixth) {
+    const svpwm_on_time_t t = on_time(raw_ab(Vector{20.0, 0.0}.turned(sixth * 60.0 * kDegree), 16), raw(kLink, 16));
+    const int t1 = t.leg[t.hi] - t.leg[t.mid], t2 = t.leg[t.mid] - t.leg[t.lo];
+    ASSERT_EQ(std::min(t1, t2), 0) << sixth;
+    const svpwm_pulses_t p = cheapest(c, t);
+    const std::uint16_t one = t1 > 0 ? t.mid : t.hi, other = t1 > 0 ? t.lo : t.mid;
+    EXPECT_EQ(rise(p, one), rise(p, other)) << sixth;
+    EXPECT_EQ(lasts(p, static_cast<std::uint16_t>(t1 > 0 ? 1u << t.hi : 7u ^ (1u << t.lo))), 3000) << sixth;
+  }
 }
 
 // Fig. 4: extending 100 is compensated by 011, extending 110 by 001, each by exactly as much.

@@ -2,6 +2,10 @@
 
 #include "tests/svpwm/period.hpp"
 
+extern "C" {
+#include "svpwm/on_time.h"
+}
+
 namespace {
 
 using namespace stillspin::test;
@@ -88,6 +92,26 @@ TEST(OnTime, TheLegsBelongTogetherWithAnyVoltage) {
     ASSERT_NEAR(t.leg[t.mid], (t2 - t1) / 3.0, 1.0);
     ASSERT_NEAR(t.leg[t.lo], -(t1 + 2.0 * t2) / 3.0, 1.0);
   }
+}
+
+// Two or three legs of equal on-times have the order of their numbers, whichever of them they are.
+TEST(OnTime, BetweenEqualOnesTheFirstIsTheLonger) {
+  const struct {
+    double degrees;  // of the voltage
+    int hi, mid, lo;
+  } cases[] = {{0.0, 0, 1, 2}, {60.0, 0, 1, 2}, {120.0, 1, 0, 2}, {180.0, 1, 2, 0}, {240.0, 2, 0, 1}, {300.0, 0, 2, 1}};
+  for (const auto& c : cases) {
+    // At multiples of 60 degrees two legs' voltages are the same, to less than a tick.
+    const svpwm_on_time_t t = on_time(raw_ab(Vector{60.0, 0.0}.turned(c.degrees * kDegree), 16), raw(300.0, 16));
+    ASSERT_TRUE(t.leg[t.hi] == t.leg[t.mid] || t.leg[t.mid] == t.leg[t.lo]) << c.degrees;
+    EXPECT_EQ(t.hi, c.hi) << c.degrees;
+    EXPECT_EQ(t.mid, c.mid) << c.degrees;
+    EXPECT_EQ(t.lo, c.lo) << c.degrees;
+  }
+  const svpwm_on_time_t none = on_time(ab_t{0, 0}, raw(300.0, 16));
+  EXPECT_EQ(none.hi, 0);
+  EXPECT_EQ(none.mid, 1);
+  EXPECT_EQ(none.lo, 2);
 }
 
 TEST(OnTime, ZeroIsZero) {

@@ -5,6 +5,10 @@
 #include "hal/hal_adc.h"
 #include "tests/svpwm/period.hpp"
 
+extern "C" {
+#include "svpwm/windows.h"
+}
+
 namespace {
 
 using namespace stillspin::test;
@@ -98,6 +102,20 @@ TEST(Windows, CoincidentEdgesMakeNoEmptyWindow) {
   EXPECT_EQ(p.windows[1].state, 7);
   EXPECT_EQ(p.windows[2].state, 0);
   expect_rules(p, c);
+}
+
+// An interval has a window as soon as the two bursts are as far apart as is of use, and not a tick earlier.
+TEST(Windows, TheShortestIntervalIsWorthALook) {
+  const sampling_config_t c = {400, 140, 100, 9640, 3};
+  for (const int length : {639, 640, 641}) {
+    const auto to = static_cast<std::int16_t>(1000 + length);
+    const svpwm_pulses_t pulses = {{1000, 1000, 1000, to, to, to}, 0};
+    const svpwm_pattern_t p = pattern_of(ordered(pulses), c);
+    ASSERT_EQ(p.window_count, length < 640 ? 2 : 3) << length;
+    if (length < 640) continue;
+    EXPECT_EQ(p.windows[1].state, 7);
+    EXPECT_EQ(p.windows[1].end - p.windows[1].start, length - 540);
+  }
 }
 
 // An edge that may come early cuts the last window alone, and only where it lies inside; what is left may be too short.
