@@ -131,6 +131,19 @@ TEST_F(Modulation, AFrameThatIsLateLeavesThePatternThatRuns) {
   EXPECT_NE(std::memcmp(&first, &inside::running_pattern(), sizeof first), 0);
 }
 
+// A frame that is late, or a voltage that the link has not, is told beside the other limits.
+TEST_F(Modulation, ALimitIsToldBesideTheOthers) {
+  board.late = true;
+  inside::limits() = LIMIT_CURRENT | LIMIT_BRAKING;
+  drive_modulate(&drive);
+  EXPECT_EQ(inside::limits(), LIMIT_CURRENT | LIMIT_BRAKING | LIMIT_OVERRUN);
+  board.late = false;
+  inside::limits() = LIMIT_CURRENT | LIMIT_WEAKENING;
+  inside::command_dq_q16() = raw_dq({-150.0, 250.0}, 16);
+  drive_modulate(&drive);
+  EXPECT_EQ(inside::limits(), LIMIT_CURRENT | LIMIT_WEAKENING | LIMIT_VOLTAGE);
+}
+
 // The excess that the link cannot give comes off the integrators, along the axes in which it was asked.
 TEST_F(Modulation, AVoltageThatTheLinkHasNotComesOffTheIntegrators) {
   for (const bool closed : {true, false}) {

@@ -77,6 +77,37 @@ TEST_F(ParameterRules, EachHoldsUpToItsLimit) {
   }
 }
 
+// At each of the map's four currents the inductance along q is that along d or more; the mutual one may be what it is.
+TEST_F(ParameterRules, TheSaliencyKeepsItsSenseAtEveryPointOfTheMap) {
+  const parameters_t p = parameters;
+  const std::int32_t full = raw(100.0, 16);
+  const struct {
+    std::int32_t parameters_t::* along_q;
+    std::int32_t parameters_t::* along_d;
+  } points[] = {{&parameters_t::lqq_1, &parameters_t::ldd_1},
+                {&parameters_t::lqq_2, &parameters_t::ldd_2},
+                {&parameters_t::lqq_3, &parameters_t::ldd_3},
+                {&parameters_t::lqq_4, &parameters_t::ldd_4}};
+  for (const auto& point : points) {
+    parameters = p;
+    parameters.inductance_d = parameters.inductance_q = raw(50.0, 20);
+    parameters.*point.along_q = parameters.*point.along_d = full / 2;
+    keeps();
+    parameters.*point.along_q -= 1;
+    refuses("lqq_n");
+    parameters.*point.along_d -= 1;
+    keeps();
+    parameters.inductance_d += 1;
+    parameters.inductance_q += 1;
+    keeps();
+  }
+  parameters = p;
+  parameters.inductance_d = raw(50.0, 20);
+  parameters.inductance_q = raw(60.0, 20);
+  parameters.ldq_1 = raw(20.0, 20);
+  keeps();
+}
+
 TEST_F(ParameterRules, LinkMaximumLiesAboveLinkMinimum) {
   parameters.link_minimum = parameters.link_maximum;
   parameters.link_regulation = parameters.link_maximum;

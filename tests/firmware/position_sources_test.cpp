@@ -123,6 +123,34 @@ TEST_F(Sources, WhileAVectorIsTurnedTheTorqueIsThatOfTheWindowsToo) {
   }
 }
 
+// What a source that is alone made of the windows is taken as it is: a frame that turns at another speed than the
+// vector's was elsewhere in the windows' middle.
+TEST_F(Sources, WhileAVectorIsTurnedTheWindowsAreSeenWhereTheSourceWas) {
+  NEEDS("start/if_start");
+  const double speed = 0.2;  // rad per period
+  double told[2];
+  for (const bool measured : {true, false}) {
+    run_with(POSITION_OBSERVER);
+    inside::state() = DRIVE_START;
+    inside::flags().open_loop = true;
+    inside::start_found().phase = START_IF_RAMP;
+    inside::seen() = {kThere, raw(speed / kTurn, 32), 0, 32767};
+    const double middle = rad(kThere) + 0.5 * speed;  // half a period from where it was at the end of the last one
+    for (int k = 0; k < 2; ++k) {
+      inside::windows()[k].middle_tick = 5000;
+      inside::windows()[k].current_q20 = raw_ab(Vector{4.0, 0.0}.turned(middle + kPi / 2.0), 20);
+    }
+    if (!measured) {
+      inside::window_count() = 0;
+      const Vector in_use = Vector{0.0, 4.0}.turned(rad(kThere - kHere));
+      inside::current_dq_q20() = raw_dq(in_use, 20);
+    }
+    estimate();
+    told[measured] = real(inside::torque_accel_q8(), 8);
+  }
+  EXPECT_NEAR(told[true] / told[false], 1.0, 2e-3) << "all of it along q";
+}
+
 // The model moves where the schedule says so or has its slot, and makes K of the rest in the look's slot.
 TEST_F(Sources, TheModelFollowsWhereItHasItsPeriod) {
   for (int slot = 0; slot <= SCHEDULE_SLOTS; ++slot) {

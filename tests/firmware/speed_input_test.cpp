@@ -82,6 +82,12 @@ TEST_F(SpeedInput, TheVoltageIsTheSpeed) {
     turns(1, true, c.code);
     EXPECT_NEAR(asked_rpm(), c.rpm, 1.5) << c.code;
   }
+  for (const std::uint16_t code : {std::uint16_t{0}, std::uint16_t{81}}) {
+    turns(1, true, code);
+    EXPECT_EQ(drive_commanded_speed(), 0) << "nothing is nothing at all";
+  }
+  turns(1, true, 4095);
+  EXPECT_EQ(drive_commanded_speed(), raw(2000.0, 16)) << "and all of it is all";
   parameters.speed_input = 2;  // 10 % .. 90 %
   const struct {
     std::uint16_t code;

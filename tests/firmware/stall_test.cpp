@@ -84,6 +84,38 @@ TEST_F(Stall, NotInAnotherStateThanRun) {
   }
 }
 
+// Wherever a shaft has got to, it is from there that it has to get on.
+TEST_F(Stall, AShaftThatIsBlockedOnItsWayIsAFaultAfterItsTime) {
+  for (const double rpm : {100.0, -100.0}) {
+    for (const int ms : {100, 137, 150, 163, 175}) {  // at other angles of the turn
+      SetUp();
+      refer(static_cast<int>(rpm));
+      ASSERT_EQ(looks_to_fault(rpm, ms), ms);
+      inside::selected().speed_bpp = 0;
+      int n = 0;
+      for (; n < 5000 && inside::state() == DRIVE_RUN; ++n) look();
+      EXPECT_NEAR(n, 501, 60) << rpm << ", " << ms;  // the last of the way may have been short
+      EXPECT_EQ(inside::fault(), FAULT_STALL) << rpm << ", " << ms;
+    }
+  }
+}
+
+// A run, or a command, begins from where the shaft is.
+TEST_F(Stall, TheWayBeginsWhereTheReferenceDoes) {
+  for (const int sign : {1, -1}) {
+    SetUp();
+    refer(0);
+    for (int n = 0; n < 120; ++n) {
+      inside::selected().angle_bam += static_cast<std::uint32_t>(sign * static_cast<std::int32_t>(kDegree));
+      look();
+    }
+    refer(sign * 100);
+    int n = 0;
+    for (; n < 5000 && inside::state() == DRIVE_RUN; ++n) look();
+    EXPECT_NEAR(n, 501, 2) << "what it was turned before is no way made";
+  }
+}
+
 // More than a quarter of a turn between two looks: the angle alone would not tell which way.
 TEST_F(Stall, ASpeedBeyondWhatTwoLooksTellIsNone) {
   inside::selected().speed_bpp = bpp_of(40000);

@@ -111,6 +111,25 @@ TEST_F(StartByVector, TheSourceTakesOverWhereTheVectorIs) {
   EXPECT_EQ(brake_release_hold.left, 0u);
 }
 
+// Behind it comes what the start was begun for: a run, or the spin of a commissioning, which has speed control as well.
+TEST_F(StartByVector, TheStateBehindItBeginsAndACommissioningSpins) {
+  NEEDS("commissioning");
+  for (const drive_state_t behind : {DRIVE_RUN, DRIVE_COMMISSION}) {
+    SetUp();
+    if_ramp_phase.begin(&drive);
+    inside::flags().behind = behind;
+    for (int n = 0; inside::state() == DRIVE_START && n < 100000; ++n) {
+      inside::selected().angle_bam = if_ramp.vector_bam;
+      inside::seen() = {if_ramp.vector_bam - bam(0.4), if_ramp.speed_bpp, 0, 32767};
+      inside::command_dq_q16() = {0, 0};
+      step();
+    }
+    EXPECT_EQ(inside::state(), behind);
+    EXPECT_EQ(inside::flags().spins, behind == DRIVE_COMMISSION);
+    EXPECT_FALSE(inside::flags().open_loop);
+  }
+}
+
 // The flux that takes over above its blend has the shaft from the start on; nobody else does.
 TEST_F(StartByVector, AFluxThatTakesOverHasTheShaftAlone) {
   NEEDS("sources/flux");
