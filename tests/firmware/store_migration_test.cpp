@@ -180,6 +180,8 @@ TEST_F(Store, UnknownNumbersAreKept) {
     put(1, image);
     EXPECT_EQ(power_on(), STORE_MIGRATED);
     EXPECT_EQ(store_report()->unknown, count);
+    EXPECT_EQ(store_report()->values, parameter_count() + count);
+    EXPECT_EQ(store_report()->missing, 0);
     for (int n = 0; n < 3; ++n) {
       set_variant(n + 1);
       ASSERT_EQ(save(), STORE_SAVED);
@@ -193,6 +195,21 @@ TEST_F(Store, UnknownNumbersAreKept) {
       }
     }
     EXPECT_EQ(power_on(), STORE_MIGRATED);
+  }
+}
+
+// What one firmware knows and the other does not is counted either way, and neither hides the other.
+TEST_F(Store, UnknownNumbersDoNotStandForMissingOnes) {
+  for (const unsigned unknown : {1u, 12u, 30u}) {
+    Image image;
+    image.entries = table();
+    image.entries.resize(parameter_count() - 12);
+    for (unsigned k = 0; k < unknown; ++k) image.entries.push_back({static_cast<std::uint16_t>(1000 + k), 0, 7});
+    put(0, image);
+    EXPECT_EQ(power_on(), STORE_MIGRATED);
+    EXPECT_EQ(store_report()->unknown, unknown);
+    EXPECT_EQ(store_report()->missing, 12);
+    EXPECT_EQ(store_report()->refused, 0);
   }
 }
 
