@@ -182,6 +182,7 @@ TEST(AvvPrinted, TheObserverFollowsTheRotor) {
     const double w = 60.0;
     double theta = 0.3;
     avv_preset(&s, bam(theta - off * kDegree), bpp(w), 0);
+    s.regression.information = 99;  // of another source
     estimator_output_t out = {};
     for (int n = 0; n < 2000; ++n) {
       theta += w * kPeriod;
@@ -190,6 +191,9 @@ TEST(AvvPrinted, TheObserverFollowsTheRotor) {
         windows.push_back(window_at(m, theta, w, {0.0, 0.0}, state_vector(state), 5000, 2000));
       const Input in(model, windows);
       out = avv_printed_step(&s, &config, in.get());
+      if (n == 0) {
+        EXPECT_NEAR(rad(static_cast<std::uint32_t>(s.error_bam)) / kDegree, off, 0.5);
+      }
       ASSERT_EQ(out.quality_q15, 32767);
       ASSERT_EQ(s.regression.information, 0);
     }
@@ -200,6 +204,64 @@ TEST(AvvPrinted, TheObserverFollowsTheRotor) {
     out = avv_printed_step(&s, &config, blind.get());
     EXPECT_EQ(out.quality_q15, 0);
     EXPECT_EQ(out.angle_bam, next);
+  }
+}
+
+// Without a measurement it goes on with the torque that it is told of.
+TEST(AvvPrinted, BetweenMeasurementsTheTorqueMovesIt) {
+  const machine_model_t model = model_of(Motor{});
+  const avv_config_t config = {raw(0.01, 30), raw(0.02, 30)};
+  avv_t s = {};
+  avv_preset(&s, bam(1.0), bpp(60.0), 0);
+  Input blind(model, {});
+  estimator_input_t in = *blind.get();
+  in.torque_accel_q8 = raw(1000.0, 8);
+  for (int n = 0; n < 10; ++n) (void)avv_printed_step(&s, &config, &in);
+  EXPECT_NEAR(s.observer.speed_bpp, bpp(60.0) + 10000, 2);
+}
+
+// With three active vectors the first and the last of them are taken.
+TEST(AvvPrinted, OfMoreVectorsTheFirstAndTheLastCount) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  const auto at = [&](int state, Vector more) {
+    Window w = window_at(m, 0.7, 0.0, {0.0, 0.0}, state_vector(state), 5000, 2000);
+    w.slope = w.slope + more;
+    return w.raw();
+  };
+  estimator_window_t windows[] = {at(1, {0.0, 0.0}), at(3, {1.0, 1.0}), at(0, {0.0, 0.0}), at(2, {0.0, 0.0})};
+  estimator_input_t in = {};
+  in.model = &model;
+  in.windows = windows;
+  in.window_count = 4;
+  std::uint32_t doubled_bam = 0;
+  ASSERT_TRUE(avv_printed_angle(&in, &doubled_bam));
+  EXPECT_NEAR(wrapped(rad(doubled_bam) - 1.4), 0.0, 1e-3);
+}
+
+// What a vector's slope differs by from the zero vector's is taken as 2048 A per period at most.
+TEST(AvvPrinted, ASlopeBeyondItsFormatIsItsEnd) {
+  const machine_model_t model = model_of(Motor{});
+  const double other = 700.0;
+  for (const double slope : {2000.0, 2500.0, -2000.0, -2500.0}) {
+    estimator_window_t windows[3] = {};
+    const Vector along_a = {slope, 0.0};
+    const Vector along_b = Vector{other, 0.0}.turned(kTurn / 3.0);
+    windows[0].voltage_q19 = raw_ab(state_vector(1), 19);
+    windows[1].voltage_q19 = raw_ab(state_vector(2), 19);
+    for (estimator_window_t& w : windows) w.span_ticks = 500;
+    windows[0].change_q19 = raw_change(along_a, 500);
+    windows[1].change_q19 = raw_change(along_b, 500);
+    windows[2].zero_vector = true;
+    estimator_input_t in = {};
+    in.model = &model;
+    in.windows = windows;
+    in.window_count = 3;
+    std::uint32_t doubled_bam = 0;
+    ASSERT_TRUE(avv_printed_angle(&in, &doubled_bam));
+    const double most = std::clamp(slope, -2048.0, 2048.0);
+    const double of[3] = {most, other, -most - other};
+    EXPECT_NEAR(wrapped(rad(doubled_bam) - doubled(of)), 0.0, 0.01) << slope;
   }
 }
 

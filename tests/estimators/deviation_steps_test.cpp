@@ -182,6 +182,52 @@ TEST(DeviationSteps, DesignInItsUnits) {
   EXPECT_EQ(o.config.limit_q19, 96 * raw(0.1, 20));
 }
 
+// What lies outside of its range is taken to the range's end.
+TEST(DeviationSteps, DesignKeepsWithinItsRanges) {
+  const Observer o;
+  const auto designed = [&](const deviation_observer_tuning_t& tuning) {
+    deviation_observer_config_t c = {};
+    deviation_observer_design(&c, &o.model, &tuning);
+    return c;
+  };
+  const auto with_noise = [&](std::int32_t noise_q20) {
+    return designed({noise_q20, raw(0.6, 20), raw(0.05, 20), raw(1.0, 20), 1000, true});
+  };
+  const double least = real(1049, 20);  // 1 mA
+  for (const std::int32_t noise_q20 : {0, 1000, 1048, 1049}) {
+    EXPECT_NEAR(real(with_noise(noise_q20).weight_q8, 8) * least * least, 1.0, 1e-5) << noise_q20;
+    EXPECT_EQ(with_noise(noise_q20).limit_q19, 96 * 1049) << noise_q20;
+  }
+  EXPECT_EQ(with_noise(1050).limit_q19, 96 * 1050);
+  for (const std::int32_t noise_q20 : {kOne, kOne + 1, INT32_MAX}) {
+    EXPECT_EQ(with_noise(noise_q20).weight_q8, 256) << noise_q20;
+    EXPECT_EQ(with_noise(noise_q20).limit_q19, 96 * kOne) << noise_q20;
+  }
+  EXPECT_EQ(with_noise(kOne - 1).limit_q19, 96 * (kOne - 1));
+
+  const auto with_loads = [&](double rate, double quiet, double step) {
+    return designed({raw(0.1, 20), raw(rate, 20), raw(quiet, 20), raw(step, 20), 1000, true});
+  };
+  EXPECT_EQ(with_loads(0.0, 0.0, 0.0).load_noise_q20, 1) << "it may always change";
+  EXPECT_EQ(with_loads(2000.0, 1.0, 1.0).load_noise_q20, INT32_MAX / 100) << "in 10 ms as much as the format holds";
+  const deviation_observer_config_t louder = with_loads(0.6, 2.0, 1.0);
+  EXPECT_EQ(louder.load_noise_quiet_q20, louder.load_noise_q20) << "quiet is never louder";
+  EXPECT_NEAR(with_loads(0.6, 0.05, 2000.0).load_step_q20, 256.0 * kOne, 100.0);
+  EXPECT_EQ(with_loads(0.6, 0.05, 2000.0).moving_step_q20, 256 * kOne);
+
+  const auto with_crawl = [&](std::int32_t crawl_bpp) {
+    return designed({raw(0.1, 20), raw(0.6, 20), raw(0.05, 20), raw(1.0, 20), crawl_bpp, true});
+  };
+  const struct {
+    std::int32_t asked, taken;
+  } crawls[] = {{-5, 1}, {0, 1}, {1, 1}, {2, 2}, {INT32_MAX / 4, INT32_MAX / 4}, {INT32_MAX, INT32_MAX / 4}};
+  for (const auto& crawl : crawls) {
+    const deviation_observer_config_t c = with_crawl(crawl.asked);
+    EXPECT_EQ(c.crawl_bpp, crawl.taken) << crawl.asked;
+    EXPECT_EQ(q_over(2 * crawl.taken, c.per_crawl, 20), kOne) << crawl.asked;
+  }
+}
+
 TEST(DeviationSteps, QualityIsWhatIsLeftOfTheAnglesVariance) {
   Observer o;
   for (const int variance : {1, 16, 100}) {

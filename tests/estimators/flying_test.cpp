@@ -228,4 +228,50 @@ TEST(Flying, ResistanceAndDropsAreTakenOff) {
   EXPECT_NEAR(wrapped(rad(e.direction_bam) - std::atan2(expected.y, expected.x)), 0.0, 1e-3);
 }
 
+// It is the mean of both sizes that the turn has to fit, between two fifths and five halves of it, whichever of the
+// pulses was the stronger one.
+TEST(Flying, TheTurnMustFitTheMeanOfBothSizes) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  const double turn = 40.0 * kDegree;
+  for (const double share : {0.395, 0.405, 2.47, 2.53}) {
+    for (const bool fades : {true, false}) {
+      const double w = share * 40.0 / m.flux;
+      const auto apart = static_cast<std::int32_t>(std::lround(turn / w * 1e8));
+      const flying_emf_t first = {bam(-2.0), raw(fades ? 60.0 : 20.0, 16), 0, 0};
+      const flying_emf_t second = {bam(-2.0 + turn), raw(fades ? 20.0 : 60.0, 16), apart, 0};
+      flying_rotor_t r;
+      EXPECT_EQ(flying_resolve(&first, &second, &model, &r), share > 0.4 && share < 2.5) << share << fades;
+    }
+  }
+}
+
+// The current in the middle of the pulse, half of which the first burst may have, lags by (Lq/Ld - 1) i / (yq
+// lambda/T).
+TEST(Flying, TheLagIsThatOfTheCurrentInTheMiddle) {
+  const Motor m;
+  const machine_model_t model = model_of(m);
+  flying_pulse_t p = {};
+  p.windows = 1;
+  p.first_tick = 1000;
+  p.last_tick = 4000;
+  p.first_q20 = raw_ab({2.0, -1.0}, 20);
+  p.last_q20 = raw_ab({6.0, -5.0}, 20);  // 4 A and -3 A between them
+  const double lag = (m.lq / m.ld - 1.0) * 5.0 / (m.flux / m.lq);
+  EXPECT_NEAR(rad(static_cast<std::uint32_t>(flying_evaluate(&p, &model).lag_bam)), lag, 1e-3 * lag);
+  EXPECT_EQ(flying_evaluate(&p, &model).tick, 2500);
+}
+
+// A turn in no time is as fast as a speed can be told.
+TEST(Flying, ASpeedBeyondTheFormatIsItsEnd) {
+  const machine_model_t model = model_of(Motor{});
+  for (const double turn : {1.0, -1.0}) {
+    const flying_emf_t first = {bam(0.0), raw(60.0, 16), 0, 0}, second = {bam(turn), raw(60.0, 16), 100, 0};
+    flying_rotor_t r;
+    EXPECT_FALSE(flying_resolve(&first, &second, &model, &r));
+    EXPECT_EQ(r.speed_bpp, turn > 0.0 ? MACHINE_SPEED_END_BPP : -MACHINE_SPEED_END_BPP);
+    EXPECT_EQ(r.tick, 100);
+  }
+}
+
 }  // namespace
