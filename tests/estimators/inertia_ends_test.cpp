@@ -101,6 +101,17 @@ TEST_F(InertiaEnds, TheTurnOfTheSpeedBeforeIsTakenOff) {
   EXPECT_NEAR(real(s.turned, 24), 0.3, 1e-5);
 }
 
+TEST_F(InertiaEnds, TheRunUpEndsWhereTheReferenceIsReached) {
+  for (const std::int32_t left : {1000, 999, -999, -1000}) {
+    SetUp();
+    run_up();
+    in.speed_bpp = in.reference_bpp + left;
+    (void)step();
+    EXPECT_EQ(s.phase, std::abs(left) < 1000 ? INERTIA_SETTLE : INERTIA_RUN_UP) << left;
+    EXPECT_EQ(s.ms, std::abs(left) < 1000 ? 0 : 100);
+  }
+}
+
 TEST_F(InertiaEnds, TheRunUpGoesOnUntilSixteenTurnsAreJudged) {
   run_up();
   s.next = turns(16.0);

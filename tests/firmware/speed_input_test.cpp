@@ -54,6 +54,7 @@ TEST_F(SpeedInput, ASwitchClosedAtPowerOnStartsNothing) {
   EXPECT_EQ(inside::state(), DRIVE_START);
   EXPECT_EQ(::board.input, SPEED_INPUT_RUNS);
   EXPECT_FALSE(comm_watchdog_release()) << "the switch watches over its motor";
+  for (const std::uint32_t holder : {0u, 1u}) EXPECT_FALSE(comm_watchdog_is_of(holder)) << "and no client does";
 }
 
 TEST_F(SpeedInput, TheConverterIsChosenForThreeMillisecondsInEight) {
@@ -80,7 +81,7 @@ TEST_F(SpeedInput, TheVoltageIsTheSpeed) {
   } cases[] = {{0, 0.0}, {82, 0.0}, {2048, 979.8}, {4095, 2000.0}, {1024, 469.5}};  // 2 % at the lower end is nothing
   for (const auto& c : cases) {
     turns(1, true, c.code);
-    EXPECT_NEAR(asked_rpm(), c.rpm, 1.5) << c.code;
+    EXPECT_NEAR(asked_rpm(), c.rpm, 0.2) << c.code;
   }
   for (const std::uint16_t code : {std::uint16_t{0}, std::uint16_t{81}}) {
     turns(1, true, code);
@@ -95,7 +96,7 @@ TEST_F(SpeedInput, TheVoltageIsTheSpeed) {
   } live[] = {{410, 0.0}, {300, 0.0}, {2048, 979.6}, {3686, 2000.0}, {3800, 2000.0}};
   for (const auto& c : live) {
     turns(1, true, c.code);
-    EXPECT_NEAR(asked_rpm(), c.rpm, 1.5) << c.code;
+    EXPECT_NEAR(asked_rpm(), c.rpm, 0.2) << c.code;
   }
 }
 

@@ -100,6 +100,49 @@ TEST_F(Stall, AShaftThatIsBlockedOnItsWayIsAFaultAfterItsTime) {
   }
 }
 
+// What is a way made lies between eight degrees, however slow the reference is, and a quarter of a turn, however fast.
+TEST_F(Stall, AWayMadeIsFromEightDegreesToAQuarterTurn) {
+  for (const auto& [reference, degrees] : {std::pair{1000, 8.0}, {bpp_of(100), 90.0}}) {
+    for (const double share : {0.98, 1.02}) {
+      for (const int sign : {1, -1}) {
+        SetUp();
+        inside::speed_ramp().value = sign * reference;
+        for (int n = 0; n < 100; ++n) look();
+        ASSERT_EQ(::board.stalled_ms, 100);
+        inside::selected().angle_bam = static_cast<std::uint32_t>(std::llround(sign * share * degrees * kDegree));
+        look();
+        EXPECT_EQ(::board.stalled_ms, share > 1.0 ? 1 : 101) << degrees * share * sign;
+      }
+    }
+  }
+}
+
+// One that turns back slows down when it has lost a sixteenth of its speed and two thirds of a hertz.
+TEST_F(Stall, ASixteenthOfTheSpeedIsSlower) {
+  for (const double hertz : {0.655, 0.68}) {
+    for (const int sign : {1, -1}) {
+      SetUp();
+      refer(sign * 100);
+      const std::int32_t back = bpp_of(800);
+      inside::selected().speed_bpp = -sign * back;
+      for (int n = 0; n < 100; ++n) look();
+      inside::selected().speed_bpp = -sign * (back - back / 16 - raw(hertz * 1e-4, 32));
+      look();
+      EXPECT_EQ(::board.stalled_ms, hertz > 2.0 / 3.0 ? 1 : 101) << hertz * sign;
+    }
+  }
+}
+
+// Beyond a quarter of a turn in a millisecond the angle tells no direction.
+TEST_F(Stall, AQuarterOfATurnInAMillisecondIsTooFast) {
+  for (const double share : {0.99, 1.01, -0.99, -1.01}) {
+    SetUp();
+    inside::selected().speed_bpp = raw(share * 0.25 / 10.0, 32);
+    for (int n = 0; n < 100; ++n) look();
+    EXPECT_EQ(::board.stalled_ms, std::fabs(share) < 1.0 ? 100 : 1) << share;
+  }
+}
+
 // A run, or a command, begins from where the shaft is.
 TEST_F(Stall, TheWayBeginsWhereTheReferenceDoes) {
   for (const int sign : {1, -1}) {
