@@ -47,6 +47,16 @@ TEST_F(ProtectionLimits, MissingSamplesAndLatePeriods) {
   }
 }
 
+// Of a period without samples nothing is said of its current, whatever the one before had.
+TEST_F(ProtectionLimits, APeriodWithoutSamplesHasNoCurrent) {
+  currents({parameters.trip_current + 100, 0});
+  inside::window_count() = 0;
+  inside::missing_windows() = 1;
+  EXPECT_EQ(judged(), FAULT_NONE);
+  inside::window_count() = 1;
+  EXPECT_EQ(judged(), FAULT_CURRENT_LIMIT);
+}
+
 // What a parameter says is still good.
 TEST_F(ProtectionLimits, TheLinkAndTheCurrentMayReachTheirLimits) {
   for (const int bad : {0, 1}) {

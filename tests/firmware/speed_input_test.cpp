@@ -204,6 +204,7 @@ TEST_F(SpeedInput, ASwitchClosedBeforehandStartsNothing) {
   turns(2, false, 0);  // it has been seen open,
   parameters.speed_input = 0;
   turns(2, true, 0);  // but not when it was closed
+  EXPECT_EQ(::board.input, SPEED_INPUT_OFF);
   parameters.speed_input = 1;
   turns(3, true, 0);
   EXPECT_EQ(inside::state(), DRIVE_READY);

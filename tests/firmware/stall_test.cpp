@@ -205,6 +205,17 @@ TEST_F(Stall, AMomentOffTheLimitTakesFourBack) {
   EXPECT_EQ(inside::fault(), FAULT_STALL);
 }
 
+TEST_F(Stall, WhatIsTakenBackEndsAtNothing) {
+  for (const auto& [before, after] : {std::pair{100, 96}, {5, 1}, {4, 0}, {3, 0}, {0, 0}}) {
+    SetUp();
+    for (int n = 0; n < before; ++n) look();
+    ASSERT_EQ(::board.stalled_ms, before);
+    inside::limits() = 0;
+    look();
+    EXPECT_EQ(::board.stalled_ms, after);
+  }
+}
+
 TEST_F(Stall, OffTheLimitForAFifthOfTheTimeBeginsAnew) {
   EXPECT_EQ(looks_to_fault(0.0, 400), 400);
   inside::limits() = 0;

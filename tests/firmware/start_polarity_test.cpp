@@ -106,6 +106,40 @@ TEST_F(StartStanding, WhatSaturationLeavesOpenIsTriedThreeTimes) {
   EXPECT_EQ(start().tries, 0);
 }
 
+TEST_F(StartStanding, TheThirdTryHasHalfAsMuchAgain) {
+  inside::config().saturation = {0, raw(0.01, 30)};
+  inside::config().values.start_current = raw(4.0, 20);
+  at(START_SETTLE, 100);
+  step();
+  saturation_says(POLARITY_AMBIGUOUS);
+  EXPECT_EQ(start().saturation.current_q20, raw(4.0, 20));
+  saturation_says(POLARITY_AMBIGUOUS);
+  EXPECT_EQ(inside::start_found().phase, START_SATURATION);
+  EXPECT_EQ(start().saturation.current_q20, raw(6.0, 20));
+}
+
+// It is the current along d that a saturation has to have, and that along q a motion, from its first period on.
+TEST_F(StartStanding, ATestWhoseCurrentStaysAwayIsHeldBack) {
+  for (const bool visible : {true, false}) {
+    for (const bool follows : {true, false}) {
+      SetUp();
+      inside::config().saturation = {0, visible ? raw(0.002, 30) : 0};
+      at(START_SETTLE, 100);
+      step();
+      const std::uint16_t test = visible ? START_SATURATION : START_MOTION;
+      ASSERT_EQ(inside::start_found().phase, test);
+      for (int n = 0; n < 2000 && start().tries == 0 && inside::start_found().phase == test; ++n) {
+        const dq_t asked = inside::reference_dq_q20();
+        inside::current_dq_q20() = follows ? asked : dq_t{visible ? 0 : asked.d, visible ? asked.q : 0};
+        step();
+        start().tick++;
+      }
+      EXPECT_EQ(start().starved, !follows) << visible;
+      EXPECT_EQ(start().held_back, follows ? 0 : 1) << visible;
+    }
+  }
+}
+
 // A test whose current did not follow does not count, whatever it says: all over again from the listening, by motion,
 // with half of the current that was too much; after the third time the voltage is named.
 TEST_F(StartStanding, ATestWithoutItsCurrentDoesNotCount) {

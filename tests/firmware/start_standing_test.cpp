@@ -73,6 +73,60 @@ TEST_F(StartStanding, TheAxisIsFoundInTwelvePeriods) {
   EXPECT_NEAR(real(m.trim.half_q30, 30), 0.0, 1e-6);
 }
 
+/// Regressions of an axis at zero, with this share of the model's saliency, until the phase is over.
+void find_axis(double saliency, void (*step)()) {
+  const machine_model_t m = inside::model();
+  const double half = 0.5 * (real(m.yd_q30, 30) - real(m.yq_q30, 30)), spread = 40000.0;
+  for (int n = 0; inside::state() == DRIVE_START && inside::start_found().phase == START_AXIS && n < 50; ++n) {
+    regression_t& r = inside::avv().regression;
+    r = {};
+    r.information = 1000000;
+    r.spread_q8 = raw(spread, 8);
+    r.mirror_q16 = raw((saliency - 1.0) * half * spread, 16);
+    step();
+  }
+}
+
+// What the currents say of the wires is a fault by its kind, and nothing goes on.
+TEST_F(StartStanding, WhatIsWrongWithTheWiresIsAFault) {
+  const struct {
+    wiring_t wiring;
+    drive_fault_t fault;
+  } cases[] = {{WIRING_GOOD, FAULT_NONE},
+               {WIRING_NO_CURRENT, FAULT_NO_CURRENT},
+               {WIRING_OPEN_A, FAULT_OPEN_PHASE},
+               {WIRING_OPEN_C, FAULT_OPEN_PHASE},
+               {WIRING_DEAD_A, FAULT_CURRENT_SENSOR},
+               {WIRING_REVERSED_BOTH, FAULT_CURRENT_SENSOR},
+               {WIRING_SWAPPED, FAULT_SENSOR_ORDER},
+               {WIRING_OTHER_PHASES, FAULT_SENSOR_ORDER}};
+  for (const auto& c : cases) {
+    SetUp();
+    start_ways.checks_wiring = false;  // the test says what was found
+    inside::wiring() = c.wiring;
+    find_axis(1.0, step);
+    EXPECT_EQ(inside::fault(), c.fault) << c.wiring;
+    EXPECT_EQ(inside::start_found().phase, c.fault == FAULT_NONE ? START_SETTLE : START_AXIS) << c.wiring;
+    EXPECT_EQ(board.gates_on, c.fault == FAULT_NONE) << c.wiring;
+  }
+}
+
+// A commissioning takes a shaft that shows no axis as it is; a run needs one, and a commissioning takes one that it can
+// have.
+TEST_F(StartStanding, WithoutAnAxisACommissioningBeginsAtOnce) {
+  for (const drive_state_t behind : {DRIVE_RUN, DRIVE_COMMISSION}) {
+    for (const double saliency : {1.0, 0.0}) {
+      SetUp();
+      inside::flags().behind = behind;
+      find_axis(saliency, step);
+      const bool at_once = behind == DRIVE_COMMISSION && saliency == 0.0;
+      EXPECT_EQ(inside::start_found().uniform, saliency == 0.0);
+      EXPECT_EQ(inside::state(), at_once ? DRIVE_COMMISSION : DRIVE_START) << behind << saliency;
+      EXPECT_EQ(inside::start_found().phase, at_once ? START_AXIS : START_SETTLE) << behind << saliency;
+    }
+  }
+}
+
 // Without a test of the polarity the drive runs at the angle that the axis gives, a tenth of a millisecond's settling
 // later; a shaft that stands is held from there if that is wanted, one that turns at 20 rpm or more is not.
 TEST_F(StartStanding, WithoutAPolarityTestTheAxisIsTaken) {
