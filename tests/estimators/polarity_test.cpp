@@ -294,4 +294,34 @@ TEST(Polarity, ItsErrorIsTheScatterInThePauses) {
   EXPECT_NEAR(sigma(2.0 * step, 0.0), 0.5 * sigma(step, 0.0), 0.02 * sigma(step, 0.0));
 }
 
+// 0.34 times the mean difference of neighbouring angles with twenty of them, and less with the root of their number, by
+// tens; from 120 on it stays.
+TEST(Polarity, TheErrorFallsWithTheRootOfTheTens) {
+  for (int tens = 1; tens <= 14; ++tens) {
+    polarity_t s = {};
+    s.length = static_cast<std::int16_t>(20 * tens);
+    s.passes = 1;
+    s.segment = POLARITY_SEGMENTS - 1;  // of the second pattern, its last period
+    s.tick = static_cast<std::int16_t>(s.length - 1);
+    s.current_q20 = -raw(3.0, 20);
+    s.expected_bam = s.response_bam = 100000000;
+    const double difference = 10000000.0;  // 0.8 degrees
+    const int differences = 6 * (10 * tens - 1);
+    s.rough_bam = static_cast<std::int32_t>(difference * differences / 256.0);
+    (void)polarity_step(&s, 0);
+    EXPECT_NE(s.result, POLARITY_PENDING);
+    const double error = 0.34 * difference * std::sqrt(2.0 / std::min(tens, 12));
+    EXPECT_NEAR(real(s.sigma_q8, 8) / (100000000.0 / error), 1.0, 0.01) << tens;
+  }
+}
+
+// The sums hold six passes, and more are never counted.
+TEST(Polarity, CountsSixPassesAtMost) {
+  polarity_t s = {};
+  for (int n = 1; n <= 8; ++n) {
+    polarity_again(&s, 0, 0);
+    EXPECT_EQ(s.passes, std::min(n, 6));
+  }
+}
+
 }  // namespace
