@@ -196,4 +196,20 @@ TEST(ZvvTerms, ATorqueThatMovesNothingIsLoad) {
   }
 }
 
+// The load follows the torque by a two-hundredth a period, those included that had no zero vector.
+TEST(ZvvTerms, TheLoadFollowsAfterAWaitAsWithoutOne) {
+  const machine_model_t model = model_of(Motor{});
+  const zvv_config_t c = config(ZVV_DROPS | ZVV_ROTATION | ZVV_LOAD);
+  for (const int waits : {0, 1, 4, 9}) {
+    zvv_t s = {};
+    zvv_preset(&s, 0, 0, 0);
+    for (int n = 0; n < waits; ++n) zvv_wait(&s);
+    const Input windows(model, {window_at(Motor{}, 0.0, 0.0, {-3.0, 0.0}, {0.0, 0.0}, 5000, 7000)});
+    estimator_input_t in = *windows.get();
+    in.torque_accel_q8 = raw(10000.0, 8);
+    (void)zvv_step(&s, &c, &in, raw(-3.0, 20));
+    EXPECT_NEAR(real(s.load_accel_q8, 8), 10000.0 / 200.0 * (waits + 1), 2.0) << waits;
+  }
+}
+
 }  // namespace
