@@ -10,7 +10,7 @@ BUILD := build/$(PRESET)
 JOBS ?= $(shell nproc)
 RUNS ?= 1000000
 SAMPLE ?= 20
-PUBLISHED := 20 near seed=47
+PUBLISHED := 20 near seed=59
 PYTHON := .venv/bin/python
 DEMO := A10 A15 A16 A18a A18b A18c
 DEMO_OUT := out/demo
