@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shutil
+import signal
 import sys
 from pathlib import Path
 
@@ -23,6 +24,8 @@ from stillspin.tune.server import Server
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "sim_host" / "stillspin"
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as a shell starts what goes into the background
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # what the tests start has to hear it
 GONE = re.compile("ERR_CONNECTION_REFUSED|ERR_CONNECTION_RESET|WebSocket connection to|status of 403")
 LONG = (
     *("test_scenarios", "test_interrupted", "test_editions", "test_hil", "test_ways", "test_flash_broken"),
