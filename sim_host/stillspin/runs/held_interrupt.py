@@ -32,22 +32,24 @@ class HeldInterrupt:
         return self
 
     def hear(self) -> None:
-        """Do now what was asked for.
+        """Do now what was asked for, once.
 
         Raises:
             KeyboardInterrupt: somebody wants an end; whatever else the handlers from before raise.
         """
-        if self._noted is not None:
-            self._handlers[self._noted](self._noted, None)
+        number, self._noted = self._noted, None
+        if number is not None:
+            self._handlers[number](number, None)
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None) -> None:
-        for number, handler in self._handlers.items():
-            signal.signal(number, handler)
+        self._give_back()
         if error is None:
             self.hear()
 
-    def _note(self, number: int, frame: FrameType | None) -> None:
-        if self._noted is None:
-            self._noted = number
-        else:
-            self._handlers[number](number, frame)
+    def _give_back(self) -> None:
+        for number, handler in self._handlers.items():
+            signal.signal(number, handler)
+
+    def _note(self, number: int, _frame: FrameType | None) -> None:
+        self._noted = number
+        self._give_back()  # a second one is heard at once
