@@ -29,14 +29,13 @@
 // its 10 ms value in 100 periods.
 static int32_t load_variance_q20(const machine_model_t* m, int32_t load_rate_q20) {
   const int32_t units_q12 = qc_mul_sat(qc_mul_sat(m->accel_q12, load_rate_q20, 20), 6587625L, 34);
-  return q_clamp(qc_mul_sat(units_q12, units_q12, 4) / 100, 1, DEVIATION_VARIANCE_MAX / 8);
+  return q_max(qc_mul_sat(units_q12, units_q12, 4) / 100, 1);
 }
 
 void deviation_observer_design(deviation_observer_config_t* c, const machine_model_t* m,
                                const deviation_observer_tuning_t* t) {
-  const int32_t noise_q20 = q_clamp(t->noise_q20, 1049, ONE_Q20);
-  const int32_t inverse_q20 = q_min(q_div(ONE_Q20, noise_q20, 20), 1000 * ONE_Q20);
-  c->weight_q8 = q_square_sat(inverse_q20, 32);
+  const int32_t noise_q20 = q_max(t->noise_q20, 1049);
+  c->weight_q8 = q_square_sat(q_div(ONE_Q20, noise_q20, 20), 32);
   c->limit_q19 = noise_q20 * (OUTLIER / 2);
   c->load_noise_q20 = load_variance_q20(m, t->load_rate_q20);
   c->load_noise_quiet_q20 = q_min(load_variance_q20(m, t->load_rate_quiet_q20), c->load_noise_q20);
@@ -44,7 +43,7 @@ void deviation_observer_design(deviation_observer_config_t* c, const machine_mod
   c->moving_step_q20 = t->steps_at_speed ? 4 * q_min(c->load_step_q20, DEVIATION_VARIANCE_MAX / 8) : 0;
   // Where the map is missing the angle seen turns with the current that answers the load, and the step is noticed late.
   c->step_age_q30 = t->steps_at_speed ? STEP_AGE_Q30 : STEP_AGE_UNMAPPED_Q30;
-  c->crawl_bpp = q_clamp(t->crawl_bpp, 1, INT32_MAX / 4);
+  c->crawl_bpp = q_max(t->crawl_bpp, 1);
   c->per_crawl = q_invert(2 * c->crawl_bpp);
 }
 

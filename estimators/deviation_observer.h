@@ -25,11 +25,11 @@
 #include "estimators/regression.h"
 
 typedef struct {
-  int32_t noise_q20;            // rms error of a current difference, A, 0.001..1
+  int32_t noise_q20;            // rms error of a current difference, A, 0.001 (also for less) to 1
   int32_t load_rate_q20;        // load change expected in 10 ms, N m
   int32_t load_rate_quiet_q20;  // the same at a crawl, while nothing shows that the load changes, cogging unknown
   int32_t load_step_q20;        // step of the load to look out for at a crawl, N m
-  int32_t crawl_bpp;            // electrical speed up to which it is a crawl, 1 or more
+  int32_t crawl_bpp;            // electrical speed up to which it is a crawl, 1 (also for less) to INT32_MAX / 4
   bool steps_at_speed;          // look out for twice the step above it: needs the map of the saturation
 } deviation_observer_tuning_t;
 

@@ -55,13 +55,14 @@ typedef struct {
 
 typedef struct {
   uint16_t level;
-  uint16_t levels;   // with a saliency, or all of them
-  int32_t most_q20;  // current of the last level; before the first begins, the mean that leaves the ripple room
-  uint16_t train;    // trains begun at this level
-  int32_t tick;      // in the train, or in the pause after it
-  int32_t segment;   // length of a segment, periods
-  int32_t blank;     // of it, in which the current settles
-  int32_t step_q20;  // A by which the current may change in a period
+  uint16_t levels;    // with a saliency, or all of them
+  int32_t most_q20;   // current of the last level; before the first begins, the mean that leaves the ripple room
+  uint16_t train;     // trains begun at this level
+  int32_t tick;       // in the train, or in the pause after it
+  int32_t segment;    // length of a segment, periods
+  int32_t blank;      // of it, in which the current settles
+  int32_t step_q20;   // A by which the current may change in a period,
+  int32_t slope_q20;  // and what saturation leaves of it at the next level
   bool pause;
   bool kept;            // the first level's sums are those of the second one, with half of the currents
   volatile bool judge;  // the background level owes whether the level has a saliency
@@ -97,6 +98,7 @@ typedef struct {
   bool evaluate;          // the sums are complete and the gates are off
   bool longer;            // samples settle as long as it wants, until the parameters are loaded again
   bool uniform;           // no axis at rest: the shaft follows the current, and is not held
+  int32_t damping_q30;    // of the hold, per period
   uint32_t target_bam;    // where the shaft is held
   uint32_t goal_bam;      // and where it is to be taken
   int32_t torque_q24;     // 3/2 p flux and

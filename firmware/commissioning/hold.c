@@ -1,37 +1,48 @@
 // Holds the shaft in place while currents are measured, and takes it to a favourable place first.
 //
 // A free shaft would follow cogging, loads and every error of the angle, and with negative i_d the stator's field even
-// pushes it away. So the position is controlled by i_q, from AVV's angle and speed: a second-order law of 60 rad/s, far
-// below the observer's bandwidth, with the observer's load fed forward. The torque is known because the polarity is.
+// pushes it away. So the position is controlled by i_q, from AVV's angle and speed: a second-order law of 60 rad/s,
+// less where the rotor is heavy, far below the observer's bandwidth, with the observer's load fed forward. The torque
+// is known because the polarity is.
 //
 // The place is the nearest multiple of 60 degrees electrical, at most 7.5 degrees mechanical away with four pole pairs:
 // with i_d there, no phase carries less than half of it, so no phase current changes its sign within the ripple.
 
 #include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/inertia.h"
 #include "firmware/mode/mode.h"
 #include "firmware/start/phases.h"
 #include "hal/qmath/qcall.h"
 
-#define STIFFNESS_Q30 38655L   // (60 rad/s * 100 us)^2
-#define DAMPING_Q30 12884902L  // 2 * 60 rad/s * 100 us
+#define DAMPING_Q30 12884902L     // 2 w T, with 60 rad/s
+#define STIFF_ACCEL_Q8 16777216L  // 3/8 of it are what that law asks for at an error of a radian
 #define SIXTH_BAM 715827883L
 #define QUARTER_BITS 30        // of a turn
 #define TURN_STEP_BAM 238609L  // 0.02 degrees electrical per period
 #define SETTLE_PERIODS 6000
-#define SLOPE_STEPS 64  // periods for the current limit
+#define SLOPE_SHIFT 6u  // 64 periods for the current limit
 
 void commissioning_set_d(drive_t* d, int32_t level_q20) {
-  const int32_t step = d->config.values.current_limit / SLOPE_STEPS;
+  const int32_t step = q_shr(d->config.values.current_limit, SLOPE_SHIFT);
   dq_t* const r = &d->control.references.current_q20;
   r->d = q_clamp(level_q20, r->d - step, r->d + step);
+}
+
+// The noise of the angle comes back as current, the more of it the less a current moves the rotor: an error of one
+// radian asks for 3/8 of what the current limit accelerates with at most, and for that of 60 rad/s.
+static void design_hold(const drive_t* d, commissioning_t* c) {
+  const int32_t accel_q8 = q_min(drive_accel_q8(d, 0, d->config.values.current_limit), STIFF_ACCEL_Q8);
+  c->damping_q30 = qc_mul(DAMPING_Q30, (int32_t)q_sqrt32((uint32_t)accel_q8 * 64u), 15);
 }
 
 static int32_t holding_q20(const drive_t* d) {
   const estimator_output_t* const p = &d->position.selected;
   const int32_t error_bam = angle_diff_bam(commissioning.target_bam, p->angle_bam);
+  const int32_t damping_q30 = commissioning.damping_q30;
+  const int32_t stiffness_q30 = qc_mul(damping_q30, damping_q30, 32);
   const int32_t command_q8 =
-      qc_sub_sat(qc_mul_sat(error_bam, STIFFNESS_Q30, 22), qc_mul_sat(p->speed_bpp, DAMPING_Q30, 22));
+      qc_sub_sat(qc_mul_sat(error_bam, stiffness_q30, 22), qc_mul_sat(p->speed_bpp, damping_q30, 22));
   const int32_t torque_q20 = qc_mul_sat(qc_add_sat(command_q8, p->load_accel_q8), d->model.torque_per_accel_q24, 20);
   return qc_over(torque_q20, d->control.per_torque_constant, 24);
 }
@@ -43,7 +54,7 @@ static int32_t braking_q20(const drive_t* d) { return qc_mul_sat(-d->control.com
 // Braking has a low-pass of 64 periods, so that the current controller does not answer to itself.
 void commissioning_hold(drive_t* d) {
   const bool uniform = commissioning.uniform;
-  const int32_t limit = d->config.values.current_limit / 4;
+  const int32_t limit = q_shr(d->config.values.current_limit, 2);
   const int32_t wanted = q_limit(uniform ? braking_q20(d) : holding_q20(d), limit);
   int32_t* const current = &d->control.references.current_q20.q;
   *current = uniform ? q_follow_near(*current, wanted, 6) : wanted;
@@ -55,6 +66,7 @@ bool commissioning_align(drive_t* d) {
     c->uniform = starting.uniform;
     if (c->uniform) d->flags.unseen = KNOWN_ROTOR;
     d->control.references.closed = true;
+    design_hold(d, c);
     c->target_bam = d->position.selected.angle_bam;
     const uint32_t near_bam = c->target_bam + ((uint32_t)c->uniform << QUARTER_BITS);
     const int32_t sixths = (int32_t)q_div((int32_t)(near_bam / 2u), SIXTH_BAM / 2, 0);

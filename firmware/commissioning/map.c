@@ -19,6 +19,7 @@
 #include "firmware/base/clear.h"
 #include "firmware/commissioning/phases.h"
 #include "firmware/dictionary/parameters.h"
+#include "firmware/drive/inertia.h"
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "hal/qmath/qcall.h"
@@ -45,12 +46,13 @@ static int32_t blank(const map_t* m) { return 2 * map_level_q20(m, m->level) / m
 
 static void begin_train(drive_t* d) {
   map_t* const m = &commissioning.map;
-  const int32_t torque_q16 = qc_mul(machine_torque_constant_q24(&d->model, 0), map_level_q20(m, m->level), 28);
-  const int32_t accel_q8 = q_max(qc_mul_sat(torque_q16, d->model.accel_q12, 20), 1);
+  const int32_t accel_q8 = q_max(drive_accel_q8(d, 0, map_level_q20(m, m->level)), 1);
   const int32_t square = q_div(EXCURSION_BAM, accel_q8, 8);
   m->segment = q_clamp((int32_t)q_sqrt32((uint32_t)square), SEGMENT_MIN, SEGMENT_MAX);
   const int32_t swing_q20 = qc_mul(d->samples.link_q16, d->model.yq_q30, 27);
-  m->step_q20 = q_max(q_min(drive.config.values.current_limit / SLOPE_STEPS, swing_q20), 1);
+  // A slow train takes the shaft far: at least a quarter.
+  const int32_t most_q20 = q_max(q_min(drive.config.values.current_limit / SLOPE_STEPS, swing_q20), 4);
+  m->step_q20 = q_clamp(m->slope_q20, q_shr(most_q20, 2), most_q20);
   m->blank = blank(m);
   m->segment = q_max(m->segment, m->blank + 14);
   m->pause = false;
@@ -63,8 +65,8 @@ static void begin_train(drive_t* d) {
 
 // Follows what the current of the last period did to the shaft.
 static void predict(const drive_t* d, map_t* m) {
-  const int32_t torque_q16 = machine_torque_q16(&d->model, d->control.measured_q20);
-  m->speed_q8 = qc_add_sat(m->speed_q8, qc_mul_sat(torque_q16, d->model.accel_q12, 20));
+  const dq_t i = d->control.measured_q20;
+  m->speed_q8 = qc_add_sat(m->speed_q8, drive_accel_q8(d, i.d, i.q));
   m->position_bam = qc_add_sat(m->position_bam, q_shr(m->speed_q8, 8));
 }
 
@@ -151,6 +153,7 @@ int32_t commissioning_map_done(const map_t* m) {
 static void begin_map(map_t* m) {
   m->levels = MAP_LEVELS;
   m->lost = false;
+  m->slope_q20 = INT32_MAX;
   m->level = 0;
   m->train = 0;
   m->tick = 0;

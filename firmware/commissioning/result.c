@@ -19,7 +19,8 @@ enum {
 #define EDGE_CHANGE_MAX_Q16 65536L  // 1 us
 #define TURN_MAX_BAM 357913941L     // 30 degrees: beyond that next to no saliency is left
 #define SALIENCY_SHARE 8            // nor with less than an eighth of it
-#define CURRENT_SHARE 6             // a level's current is met within a sixth
+#define CURRENT_SHARE 5             // a level's current is met within a fifth
+#define LEAD_Q8 1229                // some 4.8 steps: (1 - exp(-12 aT))/aT with a bandwidth a of 1800 rad/s
 
 static commissioning_verdict_t worst(commissioning_verdict_t a, commissioning_verdict_t b) {
   return (a != VERDICT_USED) ? a : b;
@@ -27,7 +28,7 @@ static commissioning_verdict_t worst(commissioning_verdict_t a, commissioning_ve
 
 // Within a factor of the value so far, which comes from the nameplate.
 static commissioning_verdict_t near(int32_t value, int32_t before, int32_t factor) {
-  return (value / factor > before || value < before / factor) ? VERDICT_NAMEPLATE : VERDICT_USED;
+  return solve_is_near(value, before, factor) ? VERDICT_USED : VERDICT_NAMEPLATE;
 }
 
 static commissioning_verdict_t agree(int32_t a, int32_t b, int32_t parts) {
@@ -93,12 +94,13 @@ static commissioning_verdict_t judge_unsaturated(const map_values_t* v, int32_t 
                                                  commissioning_report_t* r) {
   const parameters_t* const p = &parameters;
   const commissioning_verdict_t measured = v->valid ? VERDICT_USED : VERDICT_NOT_MEASURED;
-  const commissioning_verdict_t d = worst(measured, near(v->ldd_q20, p->inductance_d, 2));
-  const commissioning_verdict_t q = worst(measured, near(v->lqq_q20, p->inductance_q, 2));
-  offer(r, ID_inductance_d, v->ldd_q20, worst(d, (q == VERDICT_USED) ? d : VERDICT_DEPENDS));
-  offer(r, ID_inductance_q, v->lqq_q20, worst(q, (d == VERDICT_USED) ? q : VERDICT_DEPENDS));
+  const uint16_t first = r->count;
+  offer(r, ID_inductance_d, v->ldd_q20, worst(measured, near(v->ldd_q20, p->inductance_d, 2)));
+  offer(r, ID_inductance_q, v->lqq_q20, worst(measured, near(v->lqq_q20, p->inductance_q, 2)));
+  const bool both = all_used(r, first);
+  if (!both) refuse_all(r, first);
   offer(r, ID_sensor_mismatch, qc_mul_sat(mismatch_q30, 100L, 14), measured);  // percent, Q16
-  return worst(d, q);
+  return both ? VERDICT_USED : VERDICT_DEPENDS;
 }
 
 static int32_t percent_q16(int32_t part, int32_t whole) {
@@ -111,8 +113,8 @@ static void judge_level(const map_values_t* v, const map_values_t* zero, uint16_
   const commissioning_verdict_t current = agree(level_q20, v->current_q20, CURRENT_SHARE);
   const bool singular = v->ldd_q20 <= 0 || v->lqq_q20 <= 0 || qc_abs_sat(v->turn_bam) > TURN_MAX_BAM;
   commissioning_verdict_t all = worst(measured, singular ? VERDICT_NOT_PHYSICAL : VERDICT_USED);
-  all = worst(all, (current == VERDICT_USED) ? current : VERDICT_NOT_MEASURED);
-  all = worst(all, (unsaturated == VERDICT_USED) ? unsaturated : VERDICT_DEPENDS);
+  all = worst(all, (current == VERDICT_USED) ? VERDICT_USED : VERDICT_NOT_MEASURED);
+  all = worst(all, unsaturated);
   offer(r, (uint16_t)(ID_lqq_1 + level), percent_q16(v->lqq_q20, zero->lqq_q20), all);
   offer(r, (uint16_t)(ID_ldd_1 + level), percent_q16(v->ldd_q20, zero->ldd_q20), all);
   offer(r, (uint16_t)(ID_ldq_1 + level), v->ldq_q20, all);
@@ -140,10 +142,21 @@ static map_values_t at_level(const commissioning_t* c, const map_values_t* zero,
   return v;
 }
 
+// The slope that is fed forward is one of the inductance without current; where saturation leaves less of it the
+// current gets ahead of its plan. It stays below the trip; 1/Lqq rises on with the square of the current.
+static int32_t slope_q20(const map_t* m, int32_t zero_q20, int32_t lqq_q20) {
+  const int32_t from = (int32_t)m->level + 1;
+  const int32_t to = q_min(from + 1, (int32_t)MAP_LEVELS);
+  const int32_t steeper_q24 = q_div(qc_sub_sat(zero_q20, lqq_q20), lqq_q20, 24);
+  const int32_t steps_q24 = q_max(qc_mul_sat(steeper_q24, LEAD_Q8 * to * to / (from * from), 8), 1);
+  return q_div(parameters.trip_current - map_level_q20(m, (uint16_t)(to - 1)), steps_q24, 24);
+}
+
 // Of the level that is being measured; the nameplate's saliency has to do, for the pauses still add to the other.
-bool commissioning_level_is_lost(const commissioning_t* c) {
+bool commissioning_judge_level(commissioning_t* c) {
   const map_values_t zero = unsaturated_solve(&c->unsaturated, &c->model);
   const map_values_t v = at_level(c, &zero, c->map.level);
+  c->map.slope_q20 = slope_q20(&c->map, zero.lqq_q20, v.lqq_q20);
   return has_lost_saliency(&v, parameters.inductance_q - parameters.inductance_d);
 }
 
@@ -193,8 +206,8 @@ void commissioning_solve_motion(commissioning_t* c) {
   const int32_t inertia_q24 = v.inertia_q24;
   c->torque_q24 = c->model.torque_q24;
   c->accel_q12 = c->model.accel_q12;
-  if (!v.valid || v.flux_q28 <= 0 || near(v.flux_q28, c->model.flux_q28, 2) != VERDICT_USED) return;
-  if (inertia_q24 <= 0 || near(inertia_q24, parameters.inertia, 20) != VERDICT_USED) return;
+  if (!solve_is_near(v.flux_q28, c->model.flux_q28, 2)) return;  // one that was not found is 0
+  if (inertia_q24 <= 0 || !solve_is_near(inertia_q24, parameters.inertia, 20)) return;
   c->torque_q24 = qc_mul_sat(c->model.torque_q24, q_div(v.flux_q28, c->model.flux_q28, 24), 24);
   c->accel_q12 = qc_mul_sat(c->model.accel_q12, q_div(parameters.inertia, inertia_q24, 24), 24);
 }
@@ -219,7 +232,7 @@ static void judge_spin(const commissioning_t* c, commissioning_verdict_t resista
   commissioning_verdict_t inertia = worst(measured, agree(v.inertia_up_q24, v.inertia_down_q24, 5));
   if (!c->uniform) inertia = worst(inertia, agree(inertia_q24, inertia_from_trains(c, inertia_q24), 4));
   inertia = worst(inertia, (inertia_q24 <= 0) ? VERDICT_NOT_PHYSICAL : near(inertia_q24, p->inertia, 20));
-  inertia = worst(inertia, (flux == VERDICT_USED) ? flux : VERDICT_DEPENDS);
+  if (flux != VERDICT_USED) inertia = worst(inertia, VERDICT_DEPENDS);
   offer(r, ID_inertia, inertia_q24, inertia);
   offer(r, ID_friction, v.friction_q24, worst(inertia, (v.friction_q24 < 0) ? VERDICT_NOT_PHYSICAL : VERDICT_USED));
 }

@@ -20,8 +20,9 @@ void commissioning_judge(const commissioning_t* c, commissioning_report_t* repor
 /// because both need much of the stack.
 commissioning_outcome_t commissioning_use(commissioning_report_t* r);
 
-/// Whether the map's level that is complete has lost the saliency.
-bool commissioning_level_is_lost(const commissioning_t* c);
+/// Whether the map's level that is complete has lost the saliency. Sets how fast the current of the next one may
+/// change.
+bool commissioning_judge_level(commissioning_t* c);
 
 /// After the spin: what the torque trains of the map need for the shaft's motion. Keeps the model's own values where
 /// the spin's are not plausible.

@@ -100,7 +100,7 @@ static void settle(const drive_t* d) {
     c->solve_motion = false;
   }
   if (c->map.judge) {
-    c->map.lost = commissioning_level_is_lost(c);
+    c->map.lost = commissioning_judge_level(c);
     c->map.judge = false;
   }
   if (!c->evaluate) return;

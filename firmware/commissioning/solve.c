@@ -97,6 +97,10 @@ static void invert(map_values_t* v, int32_t mean_q30, int32_t half_q30) {
   v->ldq_q20 = -qc_mul(half, twice.sin_q30, 30);
 }
 
+bool solve_is_near(int32_t value, int32_t other, int32_t factor) {
+  return value / factor <= other && value >= other / factor;
+}
+
 int32_t map_along(int32_t from, int32_t to, int32_t share_q24) {
   return qc_add_sat(from, qc_mul_sat(qc_sub_sat(to, from), share_q24, 24));
 }

@@ -46,6 +46,9 @@ map_values_t map_solve(const map_group_t group[MAP_GROUPS], const machine_model_
 /// or within 0.1 degrees of the axis: 1/512 of the saliency, Lq - Ld, mH Q20.
 bool map_smooth(int32_t ldq_q20[MAP_LEVELS], int32_t saliency_q20);
 
+/// Whether a value is within a factor of another one, which is no less than the factor. None at or below 0 is.
+bool solve_is_near(int32_t value, int32_t other, int32_t factor);
+
 /// From one value towards another by a share.
 int32_t map_along(int32_t from, int32_t to, int32_t share_q24);
 

@@ -20,10 +20,11 @@
 // have i_d < 0 where that leaves more, which pushes the rotor away, up to the field-weakening limit, for the magnets'
 // sake. Resistance of winding and of devices cannot be told apart this way: the devices' is kept as it was given.
 //
-// Twice the ripple is 4/3 U/L for the length of a pulse, the voltage's end U/4 R for the same length: where L/R is
-// below 16/3 periods there is no room between them, however long a pulse is. A rotor that follows the current needs
-// none to be seen. There the pulses are those of R i alone, which change no current's sign, and the zero vector behind
-// them lasts for most of the period. Its window sees R i decay, with no part of the link's and no edge:
+// 2.4 times the ripple is 8/5 U/L for the length of a pulse, the voltage's end U/4 R for the same length: where L/R is
+// below 7.3 periods they leave less than an eighth between them, however long a pulse is; the trip or a small current
+// limit may do so anywhere. A rotor that follows the current needs no pulses to be seen. There the pulses are those of
+// R i alone, which change no current's sign, and the zero vector behind them lasts for most of the period. Its window
+// sees R i decay, with no part of the link's and no edge:
 //   -residual / Yd = (R - R model) i + (drop error) F      with the window's own current
 // That gives R and drop. What the command has beyond it at all levels alike is the edges'; its slope is not R's, for
 // the period's end, where the current is controlled, is where the ripple is lowest.
@@ -59,7 +60,7 @@ static int32_t bearable_q20(void) {
 // Half of the current along d whose reluctance leaves the magnet no torque.
 static int32_t held_q20(void) {
   const machine_model_t* const m = &commissioning.model;
-  return q_div(m->flux_q28, q_max(m->lq_q30 - m->ld_q30, 1), 21);
+  return q_div(m->flux_q28, m->lq_q30 - m->ld_q30, 21);
 }
 
 // Where R i takes a quarter of what the link gives in a pulse. Beyond, the shorter of two pulses is about as short as
@@ -69,8 +70,8 @@ static int32_t opposite_q20(const drive_t* d) {
   return q_div(volts_q16, commissioning.model.rs_q24, 28);
 }
 
-// With no room on either side there are no levels but those under the zero vector. The pulses take the current from its
-// mean to either side, saturated by somewhat more: to the trip at most, in the map as well.
+// With next to no room between the two there are no levels but those under the zero vector. The pulses take the current
+// from its mean to either side, saturated by somewhat more: to the trip at most, in the map as well.
 static void place(const drive_t* d) {
   staircase_t* const s = &commissioning.staircase;
   const config_values_t* const v = &d->config.values;
@@ -87,15 +88,15 @@ static void place(const drive_t* d) {
     most = weakening;
     sign = -1;
   }
-  const bool hidden = ripple > q_shr(most, 1);
-  s->at_zero = hidden && commissioning.uniform;
+  const int32_t largest = most - q_shr(most, 3);
+  s->at_zero = commissioning.uniform && ripple / 10 * 24 > largest;
   if (s->at_zero) {
     commissioning_release_pulses();
     ripple = 0;
-  } else if (hidden) {
+  } else if (ripple > q_shr(most, 1)) {
     sign = 0;
   }
-  const int32_t least = q_max(most / 10 * 4, q_min(ripple / 10 * 24, most - q_shr(most, 3)));
+  const int32_t least = q_max(most / 10 * 4, q_min(ripple / 10 * 24, largest));
   s->first_q20 = sign * least;
   s->step_q20 = sign * ((most - least) / (int32_t)(STAIRCASE_LEVELS - 1u));
 }

@@ -9,14 +9,18 @@
 
 inertia_match_t inertia_match;
 
+int32_t drive_accel_q8(const drive_t* d, int32_t id_q20, int32_t iq_q20) {
+  const dq_t current_q20 = {id_q20, iq_q20};
+  return qc_mul_sat(machine_torque_q16(&d->model, current_q20), d->model.accel_q12, 20);
+}
+
 static void look(const drive_t* d, inertia_seen_t* in) {
   in->angle_bam = d->position.selected.angle_bam;
   in->speed_bpp = d->position.selected.speed_bpp;
   in->reference_bpp = d->control.ramp.value;
   in->torque_accel_q8 = d->position.torque_accel_q8;
   // Three tenths of what the current limit gives.
-  const int32_t limit_q16 = q_mul(machine_torque_constant_q24(&d->model, 0), d->config.values.current_limit, 28);
-  in->least_accel_q8 = qc_mul_sat(limit_q16, d->model.accel_q12, 20) / 10 * 3;
+  in->least_accel_q8 = drive_accel_q8(d, 0, d->config.values.current_limit) / 10 * 3;
   in->still_bpp = qc_mul_sat(STILL_RPM_Q16, d->config.bpp_per_rpm_q8, 24);
 }
 

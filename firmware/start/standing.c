@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "firmware/drive/brake_release_hold.h"
+#include "firmware/drive/inertia.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
@@ -107,9 +108,7 @@ static void begin_motion(drive_t* d) {
     polarity_again(&s->motion, seen->angle_bam, seen->speed_bpp);
   } else {
     const int32_t current = motion_current(s);
-    const int32_t torque_q16 = qc_mul(machine_torque_constant_q24(&d->model, 0), current, 28);
-    polarity_begin(&s->motion, current, qc_mul_sat(torque_q16, d->model.accel_q12, 20), seen->angle_bam,
-                   seen->speed_bpp);
+    polarity_begin(&s->motion, current, drive_accel_q8(d, 0, current), seen->angle_bam, seen->speed_bpp);
     s->motion.bounded = s->starved;
   }
   begin_test(START_MOTION);

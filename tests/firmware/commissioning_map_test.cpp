@@ -130,6 +130,27 @@ TEST_F(Phases, TheMapSumsItsGroups) {
   }
 }
 
+// A twelfth of the limit a period, half of what the link drives through Lq, or what saturation leaves of that: at least
+// a quarter, for a slow train takes the shaft far.
+TEST_F(Phases, ATrainsCurrentChangesNoFasterThanSaturationLeaves) {
+  map_t& m = commissioning.map;
+  for (const double slope : {2.0, 0.5, 0.0}) {
+    commissioning.tick = 0;
+    ASSERT_FALSE(step(commissioning_map));
+    EXPECT_EQ(m.slope_q20, INT32_MAX) << "a map begins without";
+    m.slope_q20 = raw(slope, 20);
+    for (int n = 0; m.pause; ++n) {
+      ASSERT_LT(n, 2000);
+      inside::selected().angle_bam = commissioning.target_bam;
+      windows({0.0, 0.0}, 0.0, 0.0);
+      ASSERT_FALSE(step(commissioning_map));
+    }
+    const std::int32_t most_q20 = parameters.current_limit / 12;
+    EXPECT_EQ(m.step_q20, std::clamp(raw(slope, 20), most_q20 / 4, most_q20)) << slope;
+    EXPECT_GE(m.segment, m.blank + 14) << slope;
+  }
+}
+
 // At a quarter of the limit's levels there is nothing left to halve.
 TEST_F(Phases, AMapThatFindsNoSaliencyEndsAtAQuarterOfTheLimit) {
   map_t& m = commissioning.map;

@@ -15,6 +15,8 @@ TEST_F(Phases, TheShaftIsHeldByASecondOrderLaw) {
   struct Case {
     double off, speed, load;
   };
+  commissioning.tick = 0;
+  (void)commissioning_align(&drive);
   for (const Case& c : {Case{0.2, 0.0, 0.0}, {0.0, 3.0, 0.0}, {0.0, 0.0, 200.0}, {-0.1, 2.0, -300.0}}) {
     inside::selected() = {bam(1.0), bpp(c.speed), accel_q8(c.load), 32767};
     commissioning.target_bam = bam(1.0 + c.off);
@@ -28,6 +30,27 @@ TEST_F(Phases, TheShaftIsHeldByASecondOrderLaw) {
     commissioning.target_bam = bam(sign * 2.0);
     commissioning_hold(&drive);
     EXPECT_NEAR(real(inside::reference_dq_q20().q, 20), sign * limit_ / 4.0, 1e-5);
+  }
+}
+
+// A radian asks for 3/8 of what the current limit accelerates with, where that is less.
+TEST_F(Phases, AHeavyRotorIsHeldSofter) {
+  for (const int heavier : {1, 2, 5}) {
+    inside::model().accel_q12 = inside::config().nameplate.accel_q12 / heavier;
+    inside::model().torque_per_accel_q24 = inside::config().nameplate.torque_per_accel_q24 * heavier;
+    inside::selected() = {bam(1.0), 0, 0, 32767};
+    commissioning.tick = 0;
+    (void)commissioning_align(&drive);
+    const double torque_constant = real(machine_torque_constant_q24(&inside::model(), 0), 24);
+    const double stiffness = std::fmin(3600.0, 0.3755 * per_torque() * torque_constant * limit_);
+    EXPECT_EQ(stiffness < 3600.0, heavier > 1);
+    for (const double off : {0.1, 0.0}) {
+      inside::selected() = {bam(1.0), bpp(off > 0.0 ? 0.0 : 2.0), 0, 32767};
+      commissioning.target_bam = bam(1.0 + off);
+      commissioning_hold(&drive);
+      const double accel = off > 0.0 ? stiffness * off : -2.0 * std::sqrt(stiffness) * 2.0;
+      EXPECT_NEAR(real(inside::reference_dq_q20().q, 20), accel / per_torque() / torque_constant, 5e-3) << heavier;
+    }
   }
 }
 

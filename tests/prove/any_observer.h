@@ -8,7 +8,9 @@
 
 static inline deviation_observer_config_t any_observer(const machine_model_t* m) {
   deviation_observer_config_t c;
-  const deviation_observer_tuning_t t = {any_i32, any_i32, any_i32, any_i32, any_i32, any_bool()};
+  const int32_t noise_q20 = any_from(INT32_MIN, 1048576L);
+  const int32_t crawl_bpp = any_from(INT32_MIN, INT32_MAX / 4);
+  const deviation_observer_tuning_t t = {noise_q20, any_i32, any_i32, any_i32, crawl_bpp, any_bool()};
   deviation_observer_design(&c, m, &t);
   c.cogging.order = any_from(0, 60);
   c.cogging.fast_bpp = c.crawl_bpp;
