@@ -18,9 +18,11 @@ static int64_t room_for_axis_q56(const field_weakening_input_t* in, const machin
   return (int64_t)limit * limit - (int64_t)cross * cross;
 }
 
+// At most 0: where there is room for the whole flux no root is taken.
 static int32_t feed_forward_q20(int64_t room_q56, const machine_model_t* m) {
-  const int32_t axis = (room_q56 > 0) ? (int32_t)q_sqrt64((uint64_t)room_q56) : 0;
   const int32_t flux_q28 = m->flux_q28 + qc_mul(m->trim.psi_q16, m->period_q30, 18);
+  if (room_q56 >= q_product(flux_q28, flux_q28)) return 0;
+  const int32_t axis = (room_q56 > 0) ? (int32_t)q_sqrt64((uint64_t)room_q56) : 0;
   return qc_over(qc_sub_sat(axis, flux_q28), m->per_ld, 22);
 }
 

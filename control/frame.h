@@ -51,13 +51,6 @@ static inline ab_t frame_clarke3(abc_t x) {
   return v;
 }
 
-static inline abc_t frame_inverse_clarke(ab_t v) {
-  const int32_t half = v.alpha / 2;
-  const int32_t side = q_mul_floor(v.beta, FRAME_SQRT3_HALF_Q30, 30);
-  abc_t x = {v.alpha, side - half, -side - half};
-  return x;
-}
-
 static inline dq_t frame_park(ab_t v, rotation_t r) {
   dq_t w = {q_mul_add_floor(v.alpha, r.cos_q30, v.beta, r.sin_q30, 30),
             q_mul_add_floor(v.beta, r.cos_q30, -v.alpha, r.sin_q30, 30)};
@@ -76,15 +69,16 @@ static inline ab_t frame_inverse_park(dq_t w, rotation_t r) {
   return v;
 }
 
-/// The same two of upper words alone, a few LSB less exact: where a product's last bits do not count, a third of the
-/// work on a machine without 64-bit registers.
-static inline abc_t frame_phases(ab_t v) {
+/// By upper words alone, a few LSB less exact: where a product's last bits do not count, a third of the work on a
+/// machine without 64-bit registers.
+static inline abc_t frame_inverse_clarke(ab_t v) {
   const int32_t half = q_shr(v.alpha, 1);
   const int32_t side = 2 * q_mul_hi(v.beta, FRAME_SQRT3_HALF_Q31);
   abc_t x = {v.alpha, side - half, -side - half};
   return x;
 }
 
+/// The inverse of Park's, by upper words as well.
 static inline ab_t frame_back(dq_t w, rotation_t r) {
   ab_t v = {4 * (q_mul_hi(w.d, r.cos_q30) - q_mul_hi(w.q, r.sin_q30)),
             4 * (q_mul_hi(w.d, r.sin_q30) + q_mul_hi(w.q, r.cos_q30))};

@@ -54,7 +54,7 @@ static int32_t beyond(int32_t a, int32_t b, int32_t share_q24) {
   return q_sat64(q_shr64(q_mac(q_product(a, ONE_Q24 - share_q24), b, share_q24), 24));
 }
 
-machine_point_t machine_map_at(const machine_map_t* map, int32_t iq_q20) {
+machine_point_t machine_map_at(const machine_map_t* map, int32_t iq_q20, machine_slope_t* slope) {
   const int32_t at_q24 = q_mul_sat(q_abs_sat(iq_q20), map->per_segment_q26, 22);
   const uint16_t k = (uint16_t)q_min((int32_t)((uint32_t)at_q24 >> 24), MACHINE_MAP_SEGMENTS - 1);
   const machine_point_t* const a = &map->points[k];
@@ -65,9 +65,14 @@ machine_point_t machine_map_at(const machine_map_t* map, int32_t iq_q20) {
   p.ydd_q30 = q_mix(a->ydd_q30, b->ydd_q30, share_q24, 24);
   p.yqq_q30 = q_mix(a->yqq_q30, b->yqq_q30, share_q24, 24);
   p.ydq_q30 = q_mix(a->ydq_q30, b->ydq_q30, share_q24, 24);
+  const bool ends = beyond_q24 > ONE_Q24;
+  const int32_t yqq_q30 = b->yqq_q30 - a->yqq_q30;
+  slope->yqq_q30 = ends ? 0 : (k == 0u) ? q_mul_hi(yqq_q30, share_q24 * 64) * 8 : yqq_q30;
+  slope->ydq_q30 = ends ? 0 : b->ydq_q30 - a->ydq_q30;
   p.psi_d_q16 = beyond(a->psi_d_q16, b->psi_d_q16, beyond_q24);
   p.psi_q_q16 = beyond(a->psi_q_q16, b->psi_q_q16, beyond_q24);
   if (iq_q20 < 0) {
+    slope->yqq_q30 = -slope->yqq_q30;
     p.ydq_q30 = -p.ydq_q30;
     p.psi_q_q16 = q_neg_sat(p.psi_q_q16);
   }

@@ -33,12 +33,18 @@ typedef struct {
   int32_t per_segment_q26;  // segments per ampere
 } machine_map_t;
 
+/// How the inverse inductances go with the torque current at a point: what a segment of it changes.
+typedef struct {
+  int32_t yqq_q30, ydq_q30;  // A per V and period, a segment
+} machine_slope_t;
+
 /// Derives the points; period_q30: T in s, emf_q16: lambda/T. False when an inductance matrix is not positive definite
 /// with Ldd <= Lqq, or a value does not fit its format (y above 0.6 A/V, or 0.45 across, psi/T above 32000 V).
 bool machine_map_init(machine_map_t* map, const machine_map_parameters_t* p, int32_t period_q30, int32_t emf_q16);
 
 /// The point at a torque current of either sign. Beyond the table's end the inverse inductances stay, the flux goes on,
-/// up to 128 segments and 32768 V.
-machine_point_t machine_map_at(const machine_map_t* map, int32_t iq_q20);
+/// up to 128 segments and 32768 V. The slope is that of the straight line, but for yqq in the first segment: it is
+/// even, so its slope grows from nothing, as that of a parabola.
+machine_point_t machine_map_at(const machine_map_t* map, int32_t iq_q20, machine_slope_t* slope);
 
 #endif

@@ -78,7 +78,7 @@ void machine_model_settle(machine_model_t* m) {
 }
 
 static void admit(machine_model_t* m, int32_t iq_q20) {
-  const machine_point_t p = machine_map_at(&m->map, iq_q20);
+  const machine_point_t p = machine_map_at(&m->map, iq_q20, &m->slope);
   m->iq_q20 = iq_q20;
   m->yd_q30 = q_mul(p.ydd_q30, ONE_Q24 + m->trim.ydd_q24, 24);
   m->yq_q30 = q_mul(p.yqq_q30, ONE_Q24 + m->trim.yqq_q24, 24);
@@ -153,7 +153,6 @@ bool machine_model_init(machine_model_t* m, const machine_parameters_t* p) {
   m->lq_q30 = p->lq_q30;
   m->per_ld = q_invert(p->ld_q30);
   m->flux_q28 = p->flux_q28;
-  m->pole_pairs = p->pole_pairs;
   m->period_q30 = period_q30(p->period_us);
   m->periods_per_second = (int32_t)((1000000L + p->period_us / 2) / p->period_us);
   m->ld_q16 = qc_mul_sat(p->ld_q30, m->periods_per_second, 14);

@@ -50,10 +50,9 @@ typedef struct {
   int32_t reluctance_q24;        // 3/2 p (Ld - Lq), N m per A^2
   int32_t accel_q12;             // electrical acceleration per torque, binary angle per period^2 and N m
   int32_t torque_per_accel_q24;  // and back: N m (Q16) per acceleration (Q8), Q24
-  int32_t pole_pairs;
-  int32_t periods_per_second;  // 1/T
-  int32_t ld_q16;              // L_d/T, V/A, up to 32767
-  int32_t period_q30;          // T, s
+  int32_t periods_per_second;    // 1/T
+  int32_t ld_q16;                // L_d/T, V/A, up to 32767
+  int32_t period_q30;            // T, s
   machine_map_t map;
   q_inverse_t per_ydd0, per_yqq0, per_half0;  // of the map at no current: ydd, yqq, (ydd - yqq)/2
   machine_trim_t trim;
@@ -61,6 +60,7 @@ typedef struct {
   int32_t iq_q20;                        // A
   int32_t rs_q24;                        // ohm
   int32_t yd_q30, yq_q30, ydq_q30;       // Y
+  machine_slope_t slope;                 // of it
   q_inverse_t per_yq;                    // of yq_q30
   int32_t k_dd_q24, k_dq_q24, k_qd_q24;  // K; K_qq = -K_dd
   dq_t k0_q20;                           // A per period and (rad per period)

@@ -38,16 +38,7 @@ static int32_t bandwidth_q30(const avv_config_t* c, int32_t information) {
 estimator_output_t avv_step(avv_t* s, const avv_config_t* c, const estimator_input_t* in) {
   tracking_observer_predict(&s->observer, in->torque_accel_q8);
   deviation_change_t seen[ESTIMATOR_WINDOWS];
-  estimator_frame_t own[ESTIMATOR_WINDOWS];
-  const estimator_frame_t* f = in->frames;
-  const int32_t speed_bpp = s->observer.speed_bpp;
-  const int32_t w_q30 = machine_speed_rad_q30(speed_bpp);
-  const deviation_model_t at = deviation_model(in->model, w_q30);
-  if (f == 0) {
-    deviation_frames(in->windows, in->window_count, deviation_middle(s->observer.angle_bam, speed_bpp), w_q30, own);
-    f = own;
-  }
-  for (uint16_t k = 0; k < in->window_count; k++) deviation_in_frame(&at, &in->windows[k], &f[k], &seen[k]);
+  if (in->window_count > 0u) (void)deviation_see(in, s->observer.angle_bam, s->observer.speed_bpp, seen);
   regression_evaluate(&s->regression, seen, in);
   if (s->regression.information > 0) {
     s->error_bam = avv_angle_error(&s->regression, in->model);

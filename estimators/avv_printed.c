@@ -11,7 +11,7 @@ static uint16_t phase_of(ab_t volts) {
 }
 
 static int32_t along(ab_t x, uint16_t phase) {
-  const abc_t all = frame_phases(x);
+  const abc_t all = frame_inverse_clarke(x);
   return (phase == 0) ? all.a : (phase == 1) ? all.b : all.c;
 }
 

@@ -6,7 +6,7 @@
 #define WAVE_SHIFT 2u        // the mean of a squared wave is a half
 
 int32_t cogging_load(cogging_t* s, const cogging_config_t* c, uint32_t angle_bam, int32_t speed_bpp) {
-  s->active = c->order != 0 && q_abs_sat(speed_bpp) / 3 < c->fast_bpp;
+  s->active = c->order != 0 && q_abs_sat(speed_bpp) / 3 < c->crawl_bpp;
   s->now_q8 = 0;
   if (!s->active) return 0;
   s->wave = frame_rotation((uint32_t)c->order * angle_bam);
@@ -35,7 +35,7 @@ int32_t cogging_learn(cogging_t* s, const cogging_config_t* c, const cogging_see
   const int32_t swing_q8 = q_sub_sat(in->load_q8, s->mean_q8);
   s->mean_q8 = q_follow(s->mean_q8, in->load_q8, MEAN_SHIFT);
   // A load that changes by more than cogging can be is something else.
-  if (q_abs_sat(in->speed_bpp) > c->fast_bpp || q_abs_sat(swing_q8) > c->bound_q8) return 0;
+  if (q_abs_sat(in->speed_bpp) > c->crawl_bpp || q_abs_sat(swing_q8) > c->bound_q8) return 0;
   s->known_q30 = q_follow_near(s->known_q30, ONE_Q30, MEAN_SHIFT);
   const rotation_t seen = frame_rotation(wave_bam);
   const int32_t cos_q8 = moved(&s->cos_q8, q_mul(swing_q8, seen.cos_q30, 30 + WAVE_SHIFT), c->bound_q8);

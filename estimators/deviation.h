@@ -10,6 +10,8 @@
 // Y v has made already. Products are upper words.
 // A and w k0 are the same for all windows of a period, and of the sensitivities, which only weight the residuals, the
 // part that the current makes is taken at one current of the period.
+// Y is that at the window's own torque current: a ripple puts windows under opposite vectors at opposite places of it,
+// and what dY/di_q makes of both is one and the same slope, as if the back-EMF had changed.
 
 #ifndef STILLSPIN_ESTIMATORS_DEVIATION_H
 #define STILLSPIN_ESTIMATORS_DEVIATION_H
@@ -25,6 +27,8 @@ typedef struct {
   int32_t mean_q30, half_q30, cross_q30;           // Y = [mean + half, cross; cross, mean - half], A per V and period
   int32_t a_dd_q29, a_dq_q29, a_qd_q29, a_qq_q29;  // A, A per period and A
   dq_t emf_q15;                                    // w k0, A per period
+  machine_slope_t slope;                           // of Y, for a segment of torque current
+  int32_t per_segment_q26;                         // segments per ampere
 } deviation_model_t;
 
 /// What a window shows.
@@ -38,12 +42,11 @@ typedef struct {
 typedef struct {
   dq_t residual_q20;  // A per period, within +-512
   dq_t voltage_q16;   // V
-  dq_t current_q20;   // A
 } deviation_t;
 
 /// What the residuals of a period say about angle and speed.
 typedef struct {
-  dq_t rest_q17;     // what of h_angle does not hang on the voltage, A per period and rad, within +-4096
+  dq_t rest_q17;     // what of h_angle does not hang on the voltage, A per period and rad, within +-2048
   dq_t h_speed_q20;  // h_speed, A per period and (rad per period)
 } deviation_sensitivity_t;
 
@@ -67,28 +70,13 @@ static inline dq_t deviation_mirrored_q15(int32_t half_q30, int32_t cross_q30, d
   return s;
 }
 
-/// A change of the current that the model makes of a slope, A, Q17.
-static inline int32_t deviation_made_q17(int32_t slope_q15, int32_t share_q30) {
-  return q_mul_floor(slope_q15, share_q30, 28);
-}
+/// What windows show, in their frames; iq_q18: the torque current that the model is for, A.
+void deviation_changes(const deviation_model_t* at, const estimator_window_t windows[],
+                       const estimator_frame_t frames[], uint16_t count, int32_t iq_q18, deviation_change_t seen[]);
 
-static inline void deviation_in_frame(const deviation_model_t* at, const estimator_window_t* w,
-                                      const estimator_frame_t* f, deviation_change_t* out) {
-  const int32_t share_q30 = estimator_share_q30(w);
-  const dq_t v = frame_park_hi(w->voltage_q19, f->rotation);
-  const dq_t i = f->current_q18;
-  const dq_t mirrored = deviation_mirrored_q15(at->half_q30, at->cross_q30, v);
-  const dq_t slope_q15 = {q_mul_hi(at->mean_q30, v.d) + mirrored.d + at->emf_q15.d - q_mul_hi(at->a_dd_q29, i.d) -
-                              q_mul_hi(at->a_dq_q29, i.q),
-                          q_mul_hi(at->mean_q30, v.q) + mirrored.q + at->emf_q15.q - q_mul_hi(at->a_qd_q29, i.d) -
-                              q_mul_hi(at->a_qq_q29, i.q)};
-  const dq_t seen_q17 = frame_park_hi(w->change_q19, f->rotation);
-  // Two upper words lose a unit together, and a difference of them none.
-  out->left_q17.d = seen_q17.d + 1 - deviation_made_q17(slope_q15.d, share_q30);
-  out->left_q17.q = seen_q17.q - deviation_made_q17(slope_q15.q, share_q30);
-  out->mirrored_q15 = mirrored;
-  out->voltage_q17 = v;
-}
+/// The same of a period at an estimator's angle and speed, at least one window. Returns the current in the middle one,
+/// A, Q18.
+dq_t deviation_see(const estimator_input_t* in, uint32_t angle_bam, int32_t speed_bpp, deviation_change_t seen[]);
 
 /// A change of this many fraction bits as a slope, A per period, Q20. Samples that no machine makes have 512 A per
 /// period.
@@ -96,10 +84,10 @@ static inline int32_t deviation_slope_q20(int32_t change, unsigned bits, int32_t
   return q_sat_bits(q_product(change, DEVIATION_PERIOD_Q17 / span_ticks), bits - 3u, 29);
 }
 
-/// One window in its frame.
-deviation_t deviation_of(const deviation_model_t* at, const estimator_window_t* w, const estimator_frame_t* f);
+/// What a window shows as a slope.
+deviation_t deviation_slope(const deviation_change_t* c, int32_t span_ticks);
 
-/// The same at the angle of the estimator at the end of its period.
+/// The slope of one window at the angle of the estimator at the end of its period, of a current that has no ripple.
 deviation_t deviation_evaluate(const machine_model_t* m, const estimator_window_t* w, uint32_t angle_bam,
                                int32_t speed_bpp);
 

@@ -3,7 +3,10 @@
 #include "hal/qmath/qcall.h"
 
 #define ONE_Q30 1073741823L
-#define BOOST_SHIFT 9u  // the boost fades within 51 ms
+#define COVARIANCE_BITS 29u               // DEVIATION_VARIANCE_MAX
+#define BOOST_SHIFT 9u                    // the boost fades within 51 ms
+#define STEP_AGE_Q30 268435456L           // 16 periods
+#define STEP_AGE_UNMAPPED_Q30 536870912L  // 32 periods
 
 typedef struct {
   int32_t a, s;
@@ -11,22 +14,24 @@ typedef struct {
 
 // 1 at a crawl, 0 from three times that speed.
 static int32_t crawl_share_q30(const deviation_observer_t* s, const deviation_observer_config_t* c) {
-  const int32_t above = q_abs_sat(s->speed_bpp) - c->crawl_bpp;
+  const int32_t above = q_abs_sat(s->speed_bpp) - c->cogging.crawl_bpp;
   return ONE_Q30 - q_min(q_over(q_max(above, 0), c->per_crawl, 30), ONE_Q30);
 }
 
 // A step is noticed when it has already turned the shaft: a load that changed some time ago has left speed and angle
-// behind as well, all of them in proportion, and the covariance says by how much.
+// behind as well, all of them in proportion, and the covariance says by how much. Where the map is missing, and no step
+// is looked out for at speed, the angle seen turns with the current that answers the load, and it is noticed late.
 static void admit_load_step(deviation_observer_t* s, const deviation_observer_config_t* c, int32_t variance_q20) {
-  const int32_t sl_q20 = q_mul(variance_q20, c->step_age_q30, 30);
-  const int32_t ss_q20 = q_mul(sl_q20, c->step_age_q30, 30);
-  const int32_t as_q20 = q_mul(ss_q20, c->step_age_q30, 31);
+  const int32_t age_q30 = (c->moving_step_q20 > 0) ? STEP_AGE_Q30 : STEP_AGE_UNMAPPED_Q30;
+  const int32_t sl_q20 = q_mul(variance_q20, age_q30, 30);
+  const int32_t ss_q20 = q_mul(sl_q20, age_q30, 30);
+  const int32_t as_q20 = q_mul(ss_q20, age_q30, 31);
   s->p_ll += variance_q20;
   s->p_sl += sl_q20;
   s->p_ss += ss_q20;
   s->p_al += ss_q20 / 2;
   s->p_as += as_q20;
-  s->p_aa += q_mul(as_q20, c->step_age_q30, 31);
+  s->p_aa += q_mul(as_q20, age_q30, 31);
 }
 
 // Cogging that is not known yet is a load that changes with the angle. An eighth of the variance is a bandwidth lower
@@ -111,10 +116,10 @@ static void take_information(deviation_observer_t* s) {
   const gain_t kl = gain_row(inverse, s->p_al, s->p_sl);
   // The rows are the new covariance itself; only the load's variance, which nothing measures, is left.
   s->p_aa = positive(ka.a);
-  s->p_as = q_limit(ka.s, DEVIATION_VARIANCE_MAX);
+  s->p_as = q_within_bits(ka.s, COVARIANCE_BITS);
   s->p_ss = positive(p_ss);
-  s->p_al = q_limit(kl.a, DEVIATION_VARIANCE_MAX);
-  s->p_sl = q_limit(kl.s, DEVIATION_VARIANCE_MAX);
+  s->p_al = q_within_bits(kl.a, COVARIANCE_BITS);
+  s->p_sl = q_within_bits(kl.s, COVARIANCE_BITS);
   s->p_ll = positive(q_sub_sat(s->p_ll, q_mul_add(s->p_al, gl.a, s->p_sl, gl.s, 16)));
   limit(&s->p_aa, &s->p_as, &s->p_al);
   limit(&s->p_ss, &s->p_as, &s->p_sl);

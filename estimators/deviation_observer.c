@@ -11,12 +11,10 @@
 #define ANGLE_VARIANCE (128L * ONE_Q20)
 #define SPEED_VARIANCE (64L * ONE_Q20)
 #define LOAD_VARIANCE (64L * ONE_Q20)
-#define STANDING_VARIANCE (ONE_Q20 / 4)   // 1.2 rad/s
-#define OUTLIER 192L                      // sigma in a window as long as the period: 48 in a quarter of it
-#define SCORE_BIAS_MIN 40                 // a bias of 0.4 units of angle, a third of a degree; Q24 to Q20
-#define STEP_AGE_Q30 268435456L           // 16 periods
-#define STEP_AGE_UNMAPPED_Q30 536870912L  // 32 periods
-#define LAG_MAX_Q20 16777216L             // 16 units of time: 102 ms
+#define STANDING_VARIANCE (ONE_Q20 / 4)  // 1.2 rad/s
+#define OUTLIER 192L                     // sigma in a window as long as the period: 48 in a quarter of it
+#define SCORE_BIAS_MIN 40                // a bias of 0.4 units of angle, a third of a degree; Q24 to Q20
+#define LAG_MAX_Q20 16777216L            // 16 units of time: 102 ms
 #define MEAN_SHIFT 5u
 #define POWER_SHIFT 8u
 #define POWER_START 419430L  // 0.05: nothing is suspected before the power is known
@@ -41,10 +39,8 @@ void deviation_observer_design(deviation_observer_config_t* c, const machine_mod
   c->load_noise_quiet_q20 = q_min(load_variance_q20(m, t->load_rate_quiet_q20), c->load_noise_q20);
   c->load_step_q20 = q_min(load_variance_q20(m, t->load_step_q20), DEVIATION_VARIANCE_MAX / 200) * 100;
   c->moving_step_q20 = t->steps_at_speed ? 4 * q_min(c->load_step_q20, DEVIATION_VARIANCE_MAX / 8) : 0;
-  // Where the map is missing the angle seen turns with the current that answers the load, and the step is noticed late.
-  c->step_age_q30 = t->steps_at_speed ? STEP_AGE_Q30 : STEP_AGE_UNMAPPED_Q30;
-  c->crawl_bpp = q_max(t->crawl_bpp, 1);
-  c->per_crawl = q_invert(2 * c->crawl_bpp);
+  c->cogging.crawl_bpp = q_max(t->crawl_bpp, 1);
+  c->per_crawl = q_invert(2 * c->cogging.crawl_bpp);
 }
 
 void deviation_observer_preset(deviation_observer_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8) {
@@ -112,9 +108,9 @@ static void gather(deviation_gathered_t* g, const information_t* n) {
 
 // Beyond a half the gain as it is would correct too much. Nor is an angle waited with that is not known: with zero
 // vectors alone at rest it would drift by 6 degrees in 2 s instead of one.
-static bool gain_is_old(const deviation_observer_t* s) {
-  return deviation_observer_learnt_q9(s) > HALF_Q9 || !deviation_observer_is_sure(s) ||
-         s->gathered.periods >= PERIODS_MAX;
+static bool gain_is_old(const deviation_observer_t* s, bool can_wait) {
+  if (s->gathered.periods >= PERIODS_MAX) return true;
+  return !can_wait && (deviation_observer_learnt_q9(s) > HALF_Q9 || !deviation_observer_is_sure(s));
 }
 
 bool deviation_observer_is_due(const deviation_observer_t* s) {
@@ -123,7 +119,7 @@ bool deviation_observer_is_due(const deviation_observer_t* s) {
 
 // A load that steps is not waited with for long, nor is what it does to the covariance in the 11 ms behind it.
 static void note_load(deviation_observer_t* s, const deviation_observer_config_t* c, bool suspected) {
-  const bool looks_out = c->moving_step_q20 > 0 || q_abs_sat(s->speed_bpp) <= c->crawl_bpp;
+  const bool looks_out = c->moving_step_q20 > 0 || q_abs_sat(s->speed_bpp) <= c->cogging.crawl_bpp;
   s->load_step_suspected =
       s->load_step_suspected || (suspected && looks_out && s->noise_boost_q30 < DEVIATION_BOOST_OVER_Q30);
   s->load_is_new = s->load_step_suspected || s->noise_boost_q30 > DEVIATION_BOOST_AGAIN_Q30;
@@ -152,29 +148,21 @@ static void leave(deviation_residual_t* left, const information_sums_t* n) {
   left->periods++;
 }
 
-static void refresh(deviation_observer_t* s, const machine_model_t* m, int32_t w_q30, dq_t current_q18) {
+static void refresh(deviation_observer_t* s, const machine_model_t* m, dq_t current_q18) {
   const dq_t current_q20 = {current_q18.d * 4, current_q18.q * 4};
-  s->sensitivity = deviation_sensitivity(m, w_q30, current_q20);
+  s->sensitivity = deviation_sensitivity(m, machine_speed_rad_q30(s->speed_bpp), current_q20);
   s->is_sensitive = true;
 }
 
 static information_t look(deviation_observer_t* s, const deviation_observer_config_t* c, const estimator_input_t* in) {
   information_sums_t sums = {0, 0, {0, 0}, {0, 0}, 0, {0, 0}, 0};
   deviation_change_t seen[ESTIMATOR_WINDOWS];
-  estimator_frame_t own[ESTIMATOR_WINDOWS];
-  const estimator_frame_t* f = in->frames;
-  const int32_t w_q30 = machine_speed_rad_q30(s->speed_bpp);
-  if (f == 0) {
-    deviation_frames(in->windows, in->window_count, deviation_middle(s->angle_bam, s->speed_bpp), w_q30, own);
-    f = own;
-  }
-  const deviation_model_t at = deviation_model(in->model, w_q30);
+  const dq_t current_q18 = deviation_see(in, s->angle_bam, s->speed_bpp, seen);
   // What the first period says counts only where the sensitivities were asked for beside it.
   const bool counts = s->is_sensitive || in->refresh;
-  if (in->refresh || !s->is_sensitive) refresh(s, in->model, w_q30, f[in->window_count / 2u].current_q18);
+  if (in->refresh || !s->is_sensitive) refresh(s, in->model, current_q18);
   for (uint16_t k = 0; k < in->window_count; k++) {
     const estimator_window_t* const w = &in->windows[k];
-    deviation_in_frame(&at, w, &f[k], &seen[k]);
     information_pass(&sums, w, &seen[k]);
     if (counts && (!c->zero_vectors_only || w->zero_vector)) {
       information_collect(&sums, c->limit_q19, &s->sensitivity, estimator_share_q30(w), &seen[k]);
@@ -211,7 +199,7 @@ estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviat
   follow_scores(s, &n);
   const bool suspected = scores_suggest_step(s, &n);
   note_load(s, c, suspected);
-  if (in->renew || gain_is_old(s)) {
+  if (in->renew || gain_is_old(s, in->moved)) {
     deviation_covariance_renew(s, c, suspected || s->load_step_suspected);
     s->load_step_suspected = false;
   }

@@ -40,9 +40,7 @@ typedef struct {
   int32_t load_noise_quiet_q20;  // the same at a crawl, while nothing shows that it changes
   int32_t load_step_q20;         // variance of a step of the load, at a crawl
   int32_t moving_step_q20;       // from three times its speed on; 0 looks out for none
-  int32_t step_age_q30;          // how long ago a step began when it is noticed, units of time
-  int32_t crawl_bpp;             // at least 1
-  q_inverse_t per_crawl;         // of twice crawl_bpp
+  q_inverse_t per_crawl;         // of twice cogging.crawl_bpp
   cogging_config_t cogging;
   bool zero_vectors_only;
 } deviation_observer_config_t;

@@ -47,9 +47,12 @@ typedef struct {
   bool renew;
   // It takes its sensitivities anew: as the model, the speed and the current are now.
   bool refresh;
+  // The model has been moved in this period, which takes long: a covariance that nobody has asked for can wait for one.
+  bool moved;
   // The windows in a frame that runs on evenly from the estimator's last angle, where they are known, or null. From the
   // predicted angle it differs by half the change of speed over a period at most, 1e-4 rad.
   const estimator_frame_t* frames;
+  int32_t iq_q20;  // torque current without its ripple: the mean of the period, A
 } estimator_input_t;
 
 typedef struct {

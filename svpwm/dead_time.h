@@ -44,7 +44,7 @@ static inline bool dead_time_is_in_doubt(const dead_time_config_t* c, int32_t bl
 
 /// Voltage lost in the devices at these currents, V Q16: subtract it from a leg model, or add it to a command.
 static inline ab_t dead_time_drop_q16(const dead_time_config_t* c, ab_t current_q20) {
-  const abc_t i = frame_phases(current_q20);
+  const abc_t i = frame_inverse_clarke(current_q20);
   const int32_t x = q_min(q_max(i.a, -c->band_q20), c->band_q20);
   const int32_t y = q_min(q_max(i.b, -c->band_q20), c->band_q20);
   const int32_t z = q_min(q_max(i.c, -c->band_q20), c->band_q20);

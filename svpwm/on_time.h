@@ -71,7 +71,7 @@ static inline int32_t svpwm_put_on_times(svpwm_on_time_t* t, abc_t legs_q16, int
 /// voltage_q16: wanted vector, V. Inline, as the modulator alone calls it.
 static inline svpwm_on_time_t svpwm_on_time(ab_t voltage_q16, int32_t ticks_per_volt_q20) {
   svpwm_on_time_t t;
-  const abc_t legs_q16 = frame_phases(voltage_q16);
+  const abc_t legs_q16 = frame_inverse_clarke(voltage_q16);
   t.realised_q16 = voltage_q16;
   t.limited = false;
   while (svpwm_put_on_times(&t, legs_q16, ticks_per_volt_q20) > SVPWM_SPREAD_MAX_TICKS && !t.limited) {

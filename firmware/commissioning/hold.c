@@ -109,21 +109,27 @@ bool commissioning_has_pair(const drive_t* d) {
   return d->samples.count == 2u && opposite(&w[0], &w[1]);
 }
 
-static deviation_model_t model_now(const drive_t* d) {
-  return deviation_model(&commissioning.model, machine_speed_rad_q30(d->position.selected.speed_bpp));
+static void see(const drive_t* d, uint16_t first, uint16_t count, deviation_t slope[]) {
+  const estimator_window_t* const w = &d->samples.windows[first];
+  const estimator_frame_t* const f = &d->position.frames[first];
+  const deviation_model_t at =
+      deviation_model(&commissioning.model, machine_speed_rad_q30(d->position.selected.speed_bpp));
+  deviation_change_t seen[2];
+  deviation_changes(&at, w, f, count, q_shr(d->position.seen_q20.q, 2), seen);
+  for (uint16_t k = 0; k < count; k++) slope[k] = deviation_slope(&seen[k], w[k].span_ticks);
 }
 
 deviation_t commissioning_window(const drive_t* d, uint16_t k) {
-  const deviation_model_t at = model_now(d);
-  return deviation_of(&at, &d->samples.windows[k], &d->position.frames[k]);
+  deviation_t slope;
+  see(d, k, 1, &slope);
+  return slope;
 }
 
 bool commissioning_add_pair(const drive_t* d, tensor_sums_t* sums) {
   if (!commissioning_has_pair(d)) return false;
-  const deviation_model_t at = model_now(d);
-  const deviation_t first = deviation_of(&at, &d->samples.windows[0], &d->position.frames[0]);
-  const deviation_t second = deviation_of(&at, &d->samples.windows[1], &d->position.frames[1]);
-  tensor_add(sums, &first, &second);
+  deviation_t slope[2];
+  see(d, 0, 2, slope);
+  tensor_add(sums, &slope[0], &slope[1]);
   return true;
 }
 

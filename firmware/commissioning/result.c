@@ -42,7 +42,7 @@ static commissioning_verdict_t agree(int32_t a, int32_t b, int32_t parts) {
 #endif
 
 // Places in the report of what others rest on: the functions below offer in this order.
-enum { AT_RESISTANCE = 0, AT_SENSORS = 5 };
+enum { AT_RESISTANCE = 0, AT_DROP = 1, AT_DELAY = 2, AT_SENSORS = 5 };
 
 // What has been refused stays so for the first reason.
 static void conclude(commissioning_result_t* out, int32_t value, commissioning_verdict_t verdict) {
@@ -184,17 +184,24 @@ static void judge_map(const commissioning_t* c, const map_values_t* zero, commis
   const int32_t saliency_q20 = qc_sub_sat(zero->lqq_q20, zero->ldd_q20);
   offer(r, ID_map_current, parameters.current_limit, VERDICT_USED);
   uint16_t salient = 0;
+  bool repeats = true;
   for (uint16_t k = 0; k < MAP_LEVELS; k++) {
     const map_values_t v = at_level(c, zero, k);
     judge_level(&v, zero, k, map_level_q20(&c->map, k), unsaturated, r);
-    if (k < c->map.levels && !has_lost_saliency(&v, saliency_q20)) salient = (uint16_t)(k + 1u);
+    if (k >= c->map.levels || has_lost_saliency(&v, saliency_q20)) continue;
+    salient = (uint16_t)(k + 1u);
+    repeats = repeats && map_repeats(&v);
   }
   const bool early = salient < MAP_LEVELS || c->map.most_q20 < parameters.current_limit;
   const bool ends = early && salient >= SALIENT_LEAST;
   if (ends) end_map(&r->list[first], salient, map_level_q20(&c->map, (uint16_t)(salient - 1u)));
   int32_t ldq_q20[MAP_LEVELS];
-  for (uint16_t k = 0; k < MAP_LEVELS; k++) ldq_q20[k] = r->list[first + 3u * (k + 1u)].value;
-  const bool smooth = map_smooth(ldq_q20, saliency_q20);
+  for (uint16_t k = 0; k < MAP_LEVELS; k++) {
+    ldq_q20[k] = r->list[first + 3u * (k + 1u)].value;
+    repeats = repeats && (ldq_q20[k] ^ ldq_q20[0]) >= 0;  // of one sign
+  }
+  // Cross-saturation ends: where the iron is full the curve is no cubic, but what is seen twice is none of the noise.
+  const bool smooth = map_smooth(ldq_q20, saliency_q20) || repeats;
   for (uint16_t k = 0; k < MAP_LEVELS; k++) {
     conclude(&r->list[first + 3u * (k + 1u)], ldq_q20[k], smooth ? VERDICT_USED : VERDICT_SPREAD);
   }
@@ -202,7 +209,7 @@ static void judge_map(const commissioning_t* c, const map_values_t* zero, commis
 }
 
 void commissioning_solve_motion(commissioning_t* c) {
-  const spin_values_t v = spin_solve(&c->spin, c->model.rs_q24, c->model.ld_q30, c->model.pole_pairs);
+  const spin_values_t v = spin_solve(&c->spin, c->model.rs_q24, c->model.ld_q30, parameters.pole_pairs);
   const int32_t inertia_q24 = v.inertia_q24;
   c->torque_q24 = c->model.torque_q24;
   c->accel_q12 = c->model.accel_q12;
@@ -223,7 +230,7 @@ static void judge_spin(const commissioning_t* c, commissioning_verdict_t resista
   const parameters_t* const p = &parameters;
   const int32_t winding = (resistance == VERDICT_USED) ? r->list[AT_RESISTANCE].value : p->stator_resistance;
   const int32_t resistance_q24 = qc_add_sat(winding, p->device_resistance);
-  const spin_values_t v = spin_solve(&c->spin, resistance_q24, c->model.ld_q30, c->model.pole_pairs);
+  const spin_values_t v = spin_solve(&c->spin, resistance_q24, c->model.ld_q30, parameters.pole_pairs);
   const commissioning_verdict_t measured = v.valid ? VERDICT_USED : VERDICT_NOT_MEASURED;
   commissioning_verdict_t flux = worst(measured, agree(v.flux_q28, v.flux_low_q28, 10));
   flux = worst(flux, (v.flux_q28 <= 0) ? VERDICT_NOT_PHYSICAL : near(v.flux_q28, p->magnet_flux, 2));
@@ -255,14 +262,26 @@ void commissioning_judge(const commissioning_t* c, commissioning_report_t* repor
   if (report->list[AT_SENSORS].verdict != VERDICT_USED) refuse_all(report, 0);
 }
 
-// Values that pass one by one may still not fit together; then none of them is used.
+static void take_back(const commissioning_report_t* r, uint16_t from, uint16_t to) {
+  for (uint16_t k = from; k < to; k++) (void)parameter_set(r->list[k].id, r->list[k].before);
+}
+
+// Values that pass one by one may still not fit together. What the edges lose is split between the devices' drop and
+// their delay, the less surely the lower the link: a delay that leaves none of the dead time is a split that failed,
+// and nothing else rests on it. Otherwise none of the values is used.
 commissioning_outcome_t commissioning_use(commissioning_report_t* r) {
   for (uint16_t k = 0; k < r->count; k++) {
     if (r->list[k].verdict == VERDICT_USED) (void)parameter_set(r->list[k].id, r->list[k].value);
   }
   if (parameter_conflict() != PACKED_NONE) {
-    for (uint16_t k = 0; k < r->count; k++) (void)parameter_set(r->list[k].id, r->list[k].before);
-    refuse_all(r, 0);
+    take_back(r, AT_DROP, AT_DELAY + 1);
+    if (parameter_conflict() == PACKED_NONE) {
+      r->list[AT_DELAY].verdict = VERDICT_RANGE;
+      r->list[AT_DROP].verdict = VERDICT_DEPENDS;
+    } else {
+      take_back(r, 0, r->count);
+      refuse_all(r, 0);
+    }
   }
   return all_used(r, 0) ? COMMISSIONING_DONE : COMMISSIONING_PARTLY;
 }

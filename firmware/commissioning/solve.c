@@ -7,6 +7,7 @@
 #define EIGHTH_BAM 536870912L
 #define FACTOR_LEAST_Q20 1048576L  // three quarters of that
 #define SQRT3_Q28 464943848L
+#define TENTH_DEGREE_BAM 1193046L
 #define AXIS_PARTS 512  // of the saliency: mutual inductance that turns the axis by 0.1 degrees
 // 2^32 T / 2 pi with T = 100 us: binary angle per period of 1 rad/s.
 #define BPP_PER_RAD_Q12 279988337LL  // 68356.5
@@ -115,7 +116,7 @@ void map_refer(map_values_t* v, const map_values_t* below, int32_t current_q20) 
 }
 
 map_values_t unsaturated_solve(const tensor_sums_t* s, const machine_model_t* m) {
-  map_values_t v = {false, 0, 0, 0, 0, 0, 0};
+  map_values_t v = {false, 0, 0, 0, 0, 0, 0, 0};
   tensor_axes_t a;
   if (!tensor_solve(s, m, &a) || a.half_q30 >= a.mean_q30) return v;
   invert(&v, a.mean_q30, axis_is_hidden(a.mean_q30, a.half_q30) ? 0 : a.half_q30);
@@ -149,6 +150,10 @@ bool map_smooth(int32_t ldq_q20[MAP_LEVELS], int32_t saliency_q20) {
   return close;
 }
 
+bool map_repeats(const map_values_t* v) {
+  return qc_abs_sat(v->apart_bam) <= q_max(qc_abs_sat(v->turn_bam) / 10, TENTH_DEGREE_BAM);
+}
+
 int32_t unsaturated_mismatch_q30(const tensor_sums_t* s, const machine_model_t* m) {
   tensor_axes_t a;
   if (!tensor_solve(s, m, &a)) return 0;
@@ -156,7 +161,7 @@ int32_t unsaturated_mismatch_q30(const tensor_sums_t* s, const machine_model_t* 
 }
 
 map_values_t map_solve(const map_group_t group[MAP_GROUPS], const machine_model_t* m) {
-  map_values_t v = {false, 0, 0, 0, 0, 0, 0};
+  map_values_t v = {false, 0, 0, 0, 0, 0, 0, 0};
   int32_t axis[MAP_GROUPS];
   int32_t position[MAP_GROUPS];
   int32_t mean = 0;
@@ -175,6 +180,7 @@ map_values_t map_solve(const map_group_t group[MAP_GROUPS], const machine_model_
   const int32_t predicted = qc_sub_sat(position[0], position[2]) / 2 + qc_sub_sat(position[1], position[3]) / 2;
   v.share_q24 = fit_ratio(moved, predicted, 24);
   v.turn_bam = (axis[0] - axis[1]) / 4 + (axis[2] - axis[3]) / 4;
+  v.apart_bam = (axis[0] - axis[1]) / 4 - (axis[2] - axis[3]) / 4;
   invert(&v, mean, (qc_abs_sat(axis[0]) > EIGHTH_BAM) ? -half : half);  // Lqq may have sunk below Ldd
   v.valid = true;
   return v;

@@ -20,6 +20,7 @@ typedef struct {
   bool valid;
   int32_t ldd_q20, lqq_q20, ldq_q20;
   int32_t turn_bam;     // of the saliency axis at +i_q
+  int32_t apart_bam;    // half of what the trains and their mirror image differ by in it
   int32_t share_q24;    // by which the shaft moved more than predicted, as a share
   int32_t current_q20;  // mean |i_q|, A
 } map_values_t;
@@ -42,9 +43,13 @@ map_values_t unsaturated_solve(const tensor_sums_t* s, const machine_model_t* m)
 map_values_t map_solve(const map_group_t group[MAP_GROUPS], const machine_model_t* m);
 
 /// Mutual inductances at the four levels, mH Q20, as an odd function a i + b i^3 of the current, which they are in any
-/// machine at i_d = 0. Replaces them by the fitted ones and returns true when those lie within a tenth of the largest,
-/// or within 0.1 degrees of the axis: 1/512 of the saliency, Lq - Ld, mH Q20.
+/// machine at i_d = 0 that is little saturated. Replaces them by the fitted ones and returns true when those lie within
+/// a tenth of the largest, or within 0.1 degrees of the axis: 1/512 of the saliency, Lq - Ld, mH Q20.
 bool map_smooth(int32_t ldq_q20[MAP_LEVELS], int32_t saliency_q20);
+
+/// Whether a level's trains and their mirror image saw the same turn of the axis: both within a tenth of it, or within
+/// 0.1 degrees, of their mean.
+bool map_repeats(const map_values_t* v);
 
 /// Whether a value is within a factor of another one, which is no less than the factor. None at or below 0 is.
 bool solve_is_near(int32_t value, int32_t other, int32_t factor);

@@ -41,8 +41,7 @@ static uint32_t middle_of(const estimator_output_t* now) {
 
 // Mean of some currents less their ripple, A.
 static int32_t less_ripple_q20(int32_t sum_q18, int32_t ripple_q14, int32_t per_count_q30) {
-  const int32_t left_q14 = q_shr(sum_q18, 4) - ripple_q14;
-  return q_sat_bits(q_product(left_q14, per_count_q30), 24, DRIVE_CURRENT_BITS);
+  return q_within_bits(q_mul_hi(sum_q18 - ripple_q14 * 16, per_count_q30), DRIVE_CURRENT_BITS - 4u) * 16;
 }
 
 static void measure_current(drive_t* d, const estimator_output_t* first) {
@@ -102,6 +101,8 @@ void drive_estimate(drive_t* d) {
   in.regress = is_slot(d, SLOT_REGRESSION);
   in.renew = d->schedule.renews;
   in.refresh = moves || !d->schedule.turning;
+  // Slower than this the angle is seen by the excitation alone, and less surely.
+  in.moved = moves && d->schedule.turning && q_abs_sat(d->position.selected.speed_bpp) > d->config.blend.high_bpp;
   in.windows = d->samples.windows;
   in.window_count = d->schedule.skips ? 0u : count;
   in.frames = frames;
@@ -109,6 +110,7 @@ void drive_estimate(drive_t* d) {
   // of the current, as later.
   dq_t seen_q20 = d->control.measured_q20;
   if (open_loop) seen_q20 = (single && count > 0u) ? d->position.seen_q20 : position_seen(d, seen_q20);
+  in.iq_q20 = open_loop ? seen_q20.q : d->position.seen_q20.q;
   in.torque_accel_q8 = starting ? 0 : q_mul_sat(machine_torque_q16(&d->model, seen_q20), d->model.accel_q12, 20);
   d->position.torque_accel_q8 = in.torque_accel_q8;
   inertia_match_add(&inertia_match, in.torque_accel_q8);

@@ -20,7 +20,7 @@ static int32_t phase_current(const volatile drive_t* d, bool of_b) {
   }
   const int32_t share_q30 = position_per_windows_q30[count];
   if (!of_b) return q_mul_sat(alpha_q17, share_q30, 27);
-  return q_mul_sat(q_mul_floor(beta_q17, FRAME_SQRT3_HALF_Q30, 30) - alpha_q17 / 2, share_q30, 27);
+  return q_mul_sat(2 * q_mul_hi(beta_q17, FRAME_SQRT3_HALF_Q31) - q_shr(alpha_q17, 1), share_q30, 27);
 }
 
 #include "firmware/drive/signal_looks.h"

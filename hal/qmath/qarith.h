@@ -45,6 +45,11 @@ static inline int32_t q_clamp(int32_t x, int32_t lo, int32_t hi) {
 }
 
 // x limited to -limit..limit, limit = 0..2^31 - 1: one comparison where nothing has to be limited.
+/// Within -2^bits and 2^bits - 1, for a constant below 31: a single instruction where there is one for that.
+static inline int32_t q_within_bits(int32_t x, unsigned bits) {
+  return q_clamp(x, -(int32_t)(1uL << bits), (int32_t)(1uL << bits) - 1);
+}
+
 static inline int32_t q_limit(int32_t x, int32_t limit) {
   if ((uint32_t)x + (uint32_t)limit <= 2u * (uint32_t)limit) {
     return x;

@@ -50,10 +50,15 @@ machine_model_t model_with(const Saturated& s, double current) {
   return m;
 }
 
+machine_point_t point_at(const machine_map_t& map, std::int32_t iq) {
+  machine_slope_t slope;
+  return machine_map_at(&map, iq, &slope);
+}
+
 TEST(MachineMap, FlatWithoutSaturation) {
   const machine_model_t m = model_of(Motor{});
   for (const double iq : {-30.0, -14.0, -3.0, 0.0, 1.0, 10.0, 40.0}) {
-    const machine_point_t p = machine_map_at(&m.map, raw(iq, 20));
+    const machine_point_t p = point_at(m.map, raw(iq, 20));
     EXPECT_EQ(p.ydd_q30, m.yd_q30) << iq;
     EXPECT_EQ(p.yqq_q30, m.yq_q30) << iq;
     EXPECT_EQ(p.ydq_q30, 0) << iq;
@@ -66,7 +71,7 @@ TEST(MachineMap, AdmittanceIsTheInverseOfTheInductance) {
   const Saturated s;
   const machine_model_t m = model_with(s, 14.0);
   for (const double iq : {-14.0, -10.5, -3.5, 0.0, 3.5, 7.0, 14.0}) {
-    const machine_point_t p = machine_map_at(&m.map, raw(iq, 20));
+    const machine_point_t p = point_at(m.map, raw(iq, 20));
     const double ydd = real(p.ydd_q30, 30), yqq = real(p.yqq_q30, 30), ydq = real(p.ydq_q30, 30);
     // Y L = T; T is right to 1.7e-6, inductances to 1e-9 H of 5 mH
     EXPECT_NEAR(ydd * s.motor.ld + ydq * s.ldq(iq), kPeriod, 4e-10) << iq;
@@ -79,7 +84,7 @@ TEST(MachineMap, FluxFollowsFromTheInductances) {
   const Saturated s;
   const machine_model_t m = model_with(s, 14.0);
   for (double iq = -14.0; iq <= 14.0; iq += 0.7) {
-    const machine_point_t p = machine_map_at(&m.map, raw(iq, 20));
+    const machine_point_t p = point_at(m.map, raw(iq, 20));
     // straight lines for a curve: a segment's sag is h^2/8 L' = 3.5^2 / 8 * 2 * 7.8e-3 * 14 / 22^2 = 0.7e-3 Vs at most,
     // the trapezoid's own error is a third of that, per segment
     EXPECT_NEAR(real(p.psi_q_q16, 16) * kPeriod, s.psi_q(0.0, iq), 0.8e-3) << iq;
@@ -180,7 +185,7 @@ TEST(MachineMap, RejectsWhatIsNoMachine) {
   p = s.table(14.0);
   p.ldd_q30[1] = 0;
   EXPECT_FALSE(machine_model_saturate(&m, &p));
-  EXPECT_EQ(machine_map_at(&m.map, raw(14.0, 20)).yqq_q30, before.yq_q30);  // the old one is kept
+  EXPECT_EQ(point_at(m.map, raw(14.0, 20)).yqq_q30, before.yq_q30);  // the old one is kept
 }
 
 // What the formats do not hold is refused: 32000 V for each axis' flux over a period, and an inverse inductance of
@@ -216,11 +221,37 @@ TEST(MachineMap, StraightLinesBetweenThePoints) {
     const double at = real(iq, 20) * real(m.map.per_segment_q26, 26);
     const auto k = static_cast<int>(at);
     const double share = std::floor((at - k) * 16777216.0) / 16777216.0;
-    const machine_point_t p = machine_map_at(&m.map, iq);
+    const machine_point_t p = point_at(m.map, iq);
     const machine_point_t* const a = &m.map.points[k];
     ASSERT_NEAR(p.ydd_q30, a[0].ydd_q30 + share * (a[1].ydd_q30 - a[0].ydd_q30), 1.0);
     ASSERT_NEAR(p.yqq_q30, a[0].yqq_q30 + share * (a[1].yqq_q30 - a[0].yqq_q30), 1.0);
     ASSERT_NEAR(p.ydq_q30, a[0].ydq_q30 + share * (a[1].ydq_q30 - a[0].ydq_q30), 1.0);
+  }
+}
+
+// Of what a current changes: yqq is even, ydq odd, and neither goes on beyond the last point. In the first segment yqq
+// is taken for a parabola; from there on the straight lines are off by what the slope changes in half a
+// segment: 3.3e-4.
+TEST(MachineMap, TheSlopeIsThatOfTheInverseInductances) {
+  const Saturated s;
+  const machine_model_t m = model_with(s, 14.0);
+  const double segment = 3.5;
+  const auto y = [&s](double iq) -> Vector {  // yqq, ydq
+    const double a = s.motor.ld, b = s.lqq(iq), c = s.ldq(iq);
+    return Vector{a, -c} * (kPeriod / (a * b - c * c));
+  };
+  for (double iq = -13.9; iq < 14.0; iq += 0.1) {
+    machine_slope_t slope;
+    (void)machine_map_at(&m.map, raw(iq, 20), &slope);
+    const Vector expected = (y(iq + 0.01) - y(iq - 0.01)) * (segment / 0.02);
+    EXPECT_NEAR(real(slope.yqq_q30, 30), expected.x, 0.02 * std::abs(expected.x) + 3.3e-4) << iq;
+    EXPECT_NEAR(real(slope.ydq_q30, 30), expected.y, 0.02 * std::abs(expected.y) + 1e-4) << iq;
+  }
+  for (const double iq : {-14.1, 14.1, 40.0}) {
+    machine_slope_t slope = {1, 1};
+    (void)machine_map_at(&m.map, raw(iq, 20), &slope);
+    EXPECT_EQ(slope.yqq_q30, 0) << iq;
+    EXPECT_EQ(slope.ydq_q30, 0) << iq;
   }
 }
 
@@ -249,9 +280,9 @@ TEST(MachineMap, AdmittancesEndWithTheEstimatorsFormats) {
   }
   couple(1.0, 2.2e-3);  // 0.443
   ASSERT_TRUE(machine_map_init(&map, &p, raw(kPeriod, 30), raw(160.0, 16)));
-  EXPECT_NEAR(real(machine_map_at(&map, raw(3.5, 20)).ydq_q30, 30), -0.443, 0.005);
-  EXPECT_NEAR(real(machine_map_at(&map, raw(5.25, 20)).ydq_q30, 30), 0.0, 0.01);
-  EXPECT_NEAR(real(machine_map_at(&map, raw(7.0, 20)).ydq_q30, 30), 0.443, 0.005);
+  EXPECT_NEAR(real(point_at(map, raw(3.5, 20)).ydq_q30, 30), -0.443, 0.005);
+  EXPECT_NEAR(real(point_at(map, raw(5.25, 20)).ydq_q30, 30), 0.0, 0.01);
+  EXPECT_NEAR(real(point_at(map, raw(7.0, 20)).ydq_q30, 30), 0.443, 0.005);
 }
 
 // The mutual inductance must stay below both of the others; Ldd is the smaller one.

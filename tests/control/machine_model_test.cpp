@@ -72,7 +72,6 @@ void check(const Motor& asked) {
   const double torque_per_accel = std::fmin(256.0 / real(m.accel_q12, 12), 128.0);
   expect_close(real(m.torque_per_accel_q24, 24), torque_per_accel, std::ldexp(1.0, -24), 0.0,
                "torque per acceleration");
-  EXPECT_EQ(m.pole_pairs, s.pole_pairs);
   EXPECT_EQ(m.periods_per_second, std::lround(1.0 / s.period));
 }
 

@@ -23,15 +23,15 @@ class Observer {
     const deviation_observer_tuning_t tuning = {raw(0.1, 20), raw(0.6, 20), raw(0.05, 20),
                                                 raw(1.0, 20), bpp(kCrawl),  steps_at_speed};
     deviation_observer_design(&config, &model, &tuning);
-    config.cogging = {};
+    config.cogging = {0, config.cogging.crawl_bpp, 0};
     deviation_observer_preset(&state, 0, bpp(speed), 0);
     state.p_aa = state.p_ss = state.p_ll = kOne;  // far below the limits
   }
   /// The angle's scores lean as they do behind a step of the load.
   void suggest_step() { state.mean_score_q20 = 100 * kOne; }
   void rest() { state.mean_score_q20 = 0; }
-  estimator_output_t step(bool renew = true) {
-    const estimator_input_t blind = {&model, nullptr, 0, 0, false, renew, false, nullptr};
+  estimator_output_t step(bool renew = true, bool moved = false) {
+    const estimator_input_t blind = {&model, nullptr, 0, 0, false, renew, false, moved, nullptr, 0};
     return deviation_observer_step(&state, &config, &blind);
   }
 
@@ -94,6 +94,23 @@ TEST(DeviationSteps, AStepIsAdmittedAgainAfterAWhileOnly) {
     } while (o.state.noise_boost_q30 < before && periods < 5000);
     EXPECT_NEAR(periods, std::log(c.left) / std::log(1.0 - 1.0 / 512.0), 2.0) << c.crawls;
   }
+}
+
+// An angle that is not known is not waited with, but for the period in which the model moves; twelve periods at most.
+TEST(DeviationSteps, ACovarianceThatNobodyAskedForWaitsForTheModel) {
+  Observer o;
+  o.state.p_aa = 100 * kOne;
+  ASSERT_FALSE(deviation_observer_is_sure(&o.state));
+  (void)o.step(false);
+  EXPECT_EQ(o.state.gathered.periods, 0) << "renewed";
+  for (int waited = 1; waited < 12; ++waited) {
+    (void)o.step(false, true);
+    ASSERT_EQ(o.state.gathered.periods, waited);
+  }
+  (void)o.step(false, true);
+  EXPECT_EQ(o.state.gathered.periods, 0);
+  (void)o.step(true, true);
+  EXPECT_EQ(o.state.gathered.periods, 0) << "asked for";
 }
 
 // A suspicion that comes while the covariance is not renewed is kept until it is, and says that it should be.
@@ -221,7 +238,7 @@ TEST(DeviationSteps, DesignKeepsAboveItsRanges) {
   } crawls[] = {{-5, 1}, {0, 1}, {1, 1}, {2, 2}, {INT32_MAX / 4, INT32_MAX / 4}};
   for (const auto& crawl : crawls) {
     const deviation_observer_config_t c = with_crawl(crawl.asked);
-    EXPECT_EQ(c.crawl_bpp, crawl.taken) << crawl.asked;
+    EXPECT_EQ(c.cogging.crawl_bpp, crawl.taken) << crawl.asked;
     EXPECT_EQ(q_over(2 * crawl.taken, c.per_crawl, 20), kOne) << crawl.asked;
   }
 }

@@ -48,7 +48,7 @@ TEST(Extremes, WhatTheModelMakesOfACurrentKeepsItsSign) {
     w.span_ticks = 10000;
     const estimator_frame_t frame = {{0, 1 << 30}, {400 << 18, 0}};
     deviation_change_t c;
-    deviation_in_frame(&at, &w, &frame, &c);
+    deviation_changes(&at, &w, &frame, 1, 0, &c);
     EXPECT_NEAR(real(c.left_q17.d, 17), 800.0, 0.01);
     EXPECT_NEAR(real(c.left_q17.q, 17), sign * 800.0, 0.01);
   }
@@ -142,7 +142,7 @@ TEST(Extremes, TheObserversSpeedEndsWhereTheModelDoes) {
     deviation_observer_config_t c;
     const deviation_observer_tuning_t t = {raw(0.1, 20), raw(1.0, 20), raw(0.05, 20), raw(2.0, 20), bpp(40.0), true};
     deviation_observer_design(&c, &model, &t);
-    c.cogging = {};
+    c.cogging = {0, c.cogging.crawl_bpp, 0};
     c.zero_vectors_only = false;
     deviation_observer_t s;
     deviation_observer_preset(&s, 0, 0, 0);

@@ -62,7 +62,7 @@ double sigma(unsigned state, int span, double amps, bool of_speed, std::uint64_t
     const estimator_window_t w = sampled(motor, {state, 5000, span}, theta, 0.0, current, random);
     const deviation_t d = deviation_evaluate(&m, &w, bam(theta), 0);
     const Vector e = real(d.residual_q20, 20);
-    const deviation_sensitivity_t s = deviation_sensitivity(&m, 0, d.current_q20);
+    const deviation_sensitivity_t s = deviation_sensitivity(&m, 0, {0, raw(amps, 20)});
     const dq_t mirrored_q15 =
         deviation_mirrored_q15((m.yd_q30 - m.yq_q30) / 2, m.ydq_q30, {2 * d.voltage_q16.d, 2 * d.voltage_q16.q});
     const Vector h = of_speed ? real(s.h_speed_q20, 20) : real(deviation_by_angle_q17(&s, mirrored_q15), 17);

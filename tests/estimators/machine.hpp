@@ -62,7 +62,9 @@ inline estimator_window_t observed(const Motor& m, const Window& w, double theta
 
 inline estimator_input_t input_of(const machine_model_t& m, const std::vector<estimator_window_t>& windows,
                                   std::int32_t torque_accel_q8 = 0) {
-  return {&m, windows.data(), static_cast<std::uint16_t>(windows.size()), torque_accel_q8, true, true, true, nullptr};
+  return {
+      &m, windows.data(), static_cast<std::uint16_t>(windows.size()), torque_accel_q8, true, true, true, false, nullptr,
+      0};
 }
 
 /// Electrical acceleration, rad/s^2, as the estimators have it: binary angle per period^2, Q8.

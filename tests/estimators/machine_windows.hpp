@@ -94,7 +94,9 @@ class Input {
  public:
   Input(const machine_model_t& model, const std::vector<Window>& windows, std::int32_t torque_accel_q8 = 0) {
     for (const Window& w : windows) raw_.push_back(w.raw());
-    in_ = {&model, raw_.data(), static_cast<std::uint16_t>(raw_.size()), torque_accel_q8, true, true, true, nullptr};
+    in_ = {
+        &model, raw_.data(), static_cast<std::uint16_t>(raw_.size()), torque_accel_q8, true, true, true, false, nullptr,
+        0};
   }
   Input(const Input&) = delete;
   const estimator_input_t* get() const { return &in_; }

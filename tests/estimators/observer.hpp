@@ -15,7 +15,7 @@ inline void design_plain(deviation_observer_config_t* c, const machine_model_t* 
                          std::int32_t load_rate_q20) {
   const deviation_observer_tuning_t tuning = {noise_q20, load_rate_q20, load_rate_q20, 0, 1, false};
   deviation_observer_design(c, m, &tuning);
-  c->cogging = {};
+  c->cogging = {0, 1, 0};
 }
 
 }  // namespace stillspin::test

@@ -21,8 +21,8 @@ struct Matrix {
 // The windows of a machine that has this tensor, as the model leaves them: what it explains itself is taken off.
 void add(tensor_sums_t* s, const machine_model_t& m, const Matrix& y, Vector first, Vector second, Vector common) {
   const Matrix left = {y.dd - real(m.yd_q30, 30), y.dq, y.qd, y.qq - real(m.yq_q30, 30)};
-  const deviation_t a = {raw_dq(left * first + common, 20), raw_dq(first, 16), {0, 0}};
-  const deviation_t b = {raw_dq(left * second + common, 20), raw_dq(second, 16), {0, 0}};
+  const deviation_t a = {raw_dq(left * first + common, 20), raw_dq(first, 16)};
+  const deviation_t b = {raw_dq(left * second + common, 20), raw_dq(second, 16)};
   tensor_add(s, &a, &b);
 }
 

@@ -32,13 +32,8 @@ class Bench {
       }
       const estimator_input_t in = input_of(model_, windows);
       const std::int32_t w_q30 = machine_speed_rad_q30(bpp(speed_));
-      const deviation_model_t at = deviation_model(&model_, w_q30);
-      estimator_frame_t frames[ESTIMATOR_WINDOWS];
       deviation_change_t seen[ESTIMATOR_WINDOWS];
-      deviation_frames(in.windows, in.window_count, deviation_middle(bam(theta_), bpp(speed_)), w_q30, frames);
-      for (std::uint16_t k = 0; k < in.window_count; ++k) {
-        deviation_in_frame(&at, &in.windows[k], &frames[k], &seen[k]);
-      }
+      (void)deviation_see(&in, bam(theta_), bpp(speed_), seen);
       regression_t r;
       regression_evaluate(&r, seen, &in);
       voltage_match_step(&model_, &r, w_q30, kShare);

@@ -188,7 +188,7 @@ TEST(Zvv, ZeroVectorsAmongOthersAreAveragedWithTheirDrops) {
     return list;
   };
   const std::vector<estimator_window_t> raws = see(windows, 1);
-  const estimator_input_t in = {&model, raws.data(), 3, 0, true, true, true, nullptr};
+  const estimator_input_t in = {&model, raws.data(), 3, 0, true, true, true, false, nullptr, 0};
   std::int32_t deviation = 0;
   ASSERT_TRUE(zvv_deviation_q20(&in, 0, 0, &deviation));
   double sum = 0.0;
@@ -210,7 +210,7 @@ TEST(Zvv, ZeroVectorsAmongOthersAreAveragedWithTheirDrops) {
 
   // Only the zero vectors: without one there is nothing, and what was there stays.
   std::vector<estimator_window_t> none = see(windows, 3);
-  const estimator_input_t blind = {&model, none.data(), 3, 0, true, true, true, nullptr};
+  const estimator_input_t blind = {&model, none.data(), 3, 0, true, true, true, false, nullptr, 0};
   std::int32_t untouched = 77;
   EXPECT_FALSE(zvv_deviation_q20(&blind, 0, 0, &untouched));
   EXPECT_EQ(untouched, 77);

@@ -34,9 +34,9 @@ class Reload : public Drive {
 TEST_F(Reload, NothingIsDoneThatWasNotAskedFor) {
   parameters.pole_pairs = 6;
   background_step(&drive);
-  EXPECT_EQ(inside::config().nameplate.pole_pairs, 4);
+  EXPECT_EQ(inside::config().bpp_per_rpm_q8 / 1832519L, 4);
   reload();
-  EXPECT_EQ(inside::config().nameplate.pole_pairs, 6);
+  EXPECT_EQ(inside::config().bpp_per_rpm_q8 / 1832519L, 6);
 }
 
 // While the power stage is off the model, the speed control and the hardware follow, and what was learnt is forgotten;
@@ -85,12 +85,12 @@ TEST_F(Reload, ParametersThatDoNotFitTogetherLeaveTheConfigurationAndSayWhy) {
   EXPECT_FALSE(inside::config_valid());
   EXPECT_TRUE(inside::conflict_known());
   EXPECT_EQ(inside::conflict(), SAY_blend_high_must_be_above_blend_low);
-  EXPECT_EQ(inside::config().nameplate.pole_pairs, 4);
+  EXPECT_EQ(inside::config().bpp_per_rpm_q8 / 1832519L, 4);
   parameters.blend_high = 2 * parameters.blend_low;
   reload();
   EXPECT_TRUE(inside::config_valid());
   EXPECT_EQ(inside::conflict(), PACKED_NONE);
-  EXPECT_EQ(inside::config().nameplate.pole_pairs, 6);
+  EXPECT_EQ(inside::config().bpp_per_rpm_q8 / 1832519L, 6);
 }
 
 TEST_F(Reload, ADeadBandThatTheHardwareCannotMakeIsNoConfiguration) {

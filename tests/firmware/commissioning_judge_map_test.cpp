@@ -180,6 +180,34 @@ TEST_F(CommissioningJudge, ATurnThatJumpsFromLevelToLevelIsNone) {
   EXPECT_EQ(verdict("map_known"), VERDICT_DEPENDS);
 }
 
+// Cross-saturation that ends with the iron is no cubic of the current; it is what was measured where both kinds of
+// train saw it.
+TEST_F(CommissioningJudge, ATurnThatEndsWithTheIronIsUsedWhereItWasSeenTwice) {
+  constexpr double kMutual[] = {0.16e-3, 0.144e-3, 0.104e-3, 0.08e-3};
+  for (const bool twice : {true, false}) {
+    for (int level = 1; level <= 4; ++level) {
+      Inductances l = saturated(level);
+      l.dq = -kMutual[level - 1];
+      measured(level, l, 3.5 * level);
+      if (twice || level != 2) continue;
+      Inductances other = l;
+      other.dq = 1.5 * l.dq;
+      for (const int k : {2, 3}) {
+        if (k == 3) other.dq = -other.dq;
+        tensor_reset(&c.map.group[level - 1][k].tensor);
+        add_pairs(&c.map.group[level - 1][k].tensor, c.model, other, 0.0, 0.0, 60);
+      }
+    }
+    EXPECT_EQ(verdict("ldq_2"), twice ? VERDICT_USED : VERDICT_SPREAD);
+    EXPECT_EQ(verdict("map_known"), twice ? VERDICT_USED : VERDICT_DEPENDS);
+    if (!twice) continue;
+    commissioning_report_t report;
+    commissioning_judge(&c, &report);
+    ASSERT_EQ(commissioning_use(&report), COMMISSIONING_DONE);
+    EXPECT_NEAR(real(parameters.ldq_2, 20), -0.144, 1e-3);
+  }
+}
+
 TEST_F(CommissioningJudge, AMapOfAMachineThatDoesNotSaturateIsKnown) {
   for (int level = 1; level <= 4; ++level) {
     measured(level, {4.655e-3, 7.41e-3, level % 2 == 0 ? 1e-6 : -1e-6}, 3.5 * level);

@@ -42,6 +42,25 @@ TEST_F(CommissioningJudge, AMachineWithoutSaliencyIsUsedWithoutAMap) {
   EXPECT_NEAR(real(parameters.inertia, 24), 0.00546, 1e-5);
 }
 
+// What the edges lose is split between drop and delay; with 2 us of dead time a delay ends at 0.4.
+TEST_F(CommissioningJudge, ADelayThatLeavesNoDeadTimeIsRefusedWithItsDrop) {
+  const parameters_t nameplate_parameters = parameters;
+  for (const auto& [edge, fits] : {std::pair{0.27, true}, {0.33, false}}) {
+    parameters = nameplate_parameters;
+    c.staircase = climbed(c.model, 0.387, 0.08, edge);
+    commissioning_report_t report;
+    commissioning_judge(&c, &report);
+    const parameters_t before = parameters;
+    EXPECT_EQ(commissioning_use(&report), fits ? COMMISSIONING_DONE : COMMISSIONING_PARTLY) << edge;
+    EXPECT_EQ(report.list[1].verdict, fits ? VERDICT_USED : VERDICT_DEPENDS);
+    EXPECT_EQ(report.list[2].verdict, fits ? VERDICT_USED : VERDICT_RANGE);
+    EXPECT_EQ(report.list[0].verdict, VERDICT_USED);
+    EXPECT_NE(parameters.stator_resistance, before.stator_resistance);
+    EXPECT_EQ(parameters.device_drop == before.device_drop, !fits);
+    EXPECT_EQ(parameters.turn_on_delay == before.turn_on_delay, !fits);
+  }
+}
+
 // A flux that is good in itself, with an EMF at the speed limit that the link must not bear: then none is used.
 TEST_F(CommissioningJudge, WhatDoesNotFitTogetherIsNotUsedAtAll) {
   const parameters_t before = parameters;

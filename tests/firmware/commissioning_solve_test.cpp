@@ -82,7 +82,31 @@ TEST(CommissioningMap, CrossSaturationInAFrameThatIsNotTheRotors) {
   EXPECT_NEAR(real(v.lqq_q20, 20), 5.9, 2e-3);
   EXPECT_NEAR(real(v.ldq_q20, 20), 0.112, 5e-4);
   EXPECT_NEAR(degrees(v.turn_bam), -std::atan2(2 * 0.112, 5.9 - 4.655) * 90.0 / kPi, 0.02);
+  EXPECT_NEAR(degrees(v.apart_bam), 0.0, 0.01);
+  EXPECT_TRUE(map_repeats(&v));
   EXPECT_NEAR(real(v.current_q20, 20), 10.5, 1e-4);
+}
+
+// A shaft that was moved in one kind of train only: the mean is half of it off, and both are as far from it.
+TEST(CommissioningMap, TrainsThatDisagreeAreSeen) {
+  const machine_model_t m = nameplate();
+  for (const auto& [moved, repeats] : {std::pair{0.0065, true}, {0.0075, false}, {-0.0055, true}, {-0.0062, false}}) {
+    map_group_t group[MAP_GROUPS] = {};
+    for (int k = 0; k < 4; ++k) {
+      const double sign = k % 2 == 0 ? 1.0 : -1.0;
+      add_pairs(&group[k].tensor, m, {4.655e-3, 5.9e-3, sign * 0.04e-3}, k < 2 ? sign * moved : 0.0, 0.0, 60);
+    }
+    const map_values_t v = map_solve(group, &m);
+    ASSERT_TRUE(v.valid);
+    // 32.1 mrad of turn, and half of what was moved more of it, or less: a tenth of that
+    EXPECT_NEAR(std::abs(degrees(v.apart_bam)), std::abs(moved) * 90.0 / kPi, 0.01);
+    EXPECT_EQ(map_repeats(&v), repeats) << moved;
+  }
+  map_values_t none{};
+  none.apart_bam = 1193000;  // 0.1 degrees, where nothing turns
+  EXPECT_TRUE(map_repeats(&none));
+  none.apart_bam = -1194000;
+  EXPECT_FALSE(map_repeats(&none));
 }
 
 TEST(CommissioningMap, ALevelThatWasMissedIsReferredToWhatWasMeant) {

@@ -63,7 +63,7 @@ TEST_F(DriveConfig, DefaultsAreValidAndMotorAs) {
   EXPECT_NEAR(real(c.nameplate.lq_q30, 30), m.lq, 1e-8);
   EXPECT_NEAR(real(c.nameplate.flux_q28, 28), m.flux, 1e-8);
   EXPECT_NEAR(real(c.nameplate.rs_q24, 24), 0.32 + 0.035, 1e-6);  // with the devices
-  EXPECT_EQ(c.nameplate.pole_pairs, 4);
+  EXPECT_EQ(c.bpp_per_rpm_q8, 4 * 1832519L);
   const double bpp_per_rpm = std::ldexp(4.0 / 60.0 * kPeriod, 32);
   EXPECT_NEAR(real(c.bpp_per_rpm_q8, 8) / bpp_per_rpm, 1.0, 1e-6);
   EXPECT_NEAR(real(c.rpm_per_bpp_q40, 40) * bpp_per_rpm, 1.0, 1e-6);

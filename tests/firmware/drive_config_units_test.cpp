@@ -144,20 +144,20 @@ TEST_F(Units, TheObserversNoiseAndLoad) {
                     usual.observer.load_noise_quiet_q20 * 4.0, 5e-2);
   expect_near_share(with(&parameters_t::observer_load_step, 0.5).observer.load_step_q20,
                     usual.observer.load_step_q20 / 4.0, 1e-2);
-  expect_near_share(usual.observer.crawl_bpp, 10.0 * kBppPerRpm, 1e-4);
+  expect_near_share(usual.observer.cogging.crawl_bpp, 10.0 * kBppPerRpm, 1e-4);
 }
 
-// A brake that opens lets a load fall on the shaft: a third of the noise, twice the load's rate, no step to look for.
+// A brake that opens lets a load fall on the shaft: a fifth of the noise, twice the load's rate, no step to look for.
 TEST_F(Units, AHeldShaftsObserverIsFastAndLooksForNoStep) {
   parameters.map_known = 1;
   const drive_config_t& c = made();
   EXPECT_GT(c.observer.moving_step_q20, 0);
-  expect_near_share(c.hold_observer.weight_q8, c.observer.weight_q8 / 0.09, 1e-2);
+  expect_near_share(c.hold_observer.weight_q8, c.observer.weight_q8 / 0.04, 1e-2);
   expect_near_share(c.hold_observer.load_noise_q20, 4.0 * c.observer.load_noise_q20, 1e-2);
   EXPECT_EQ(c.hold_observer.load_noise_quiet_q20, c.hold_observer.load_noise_q20) << "at a crawl too";
   EXPECT_LT(c.hold_observer.load_step_q20, c.observer.load_step_q20 / 1000) << "the format's least";
   EXPECT_EQ(c.hold_observer.moving_step_q20, 0);
-  EXPECT_EQ(c.hold_observer.crawl_bpp, c.observer.crawl_bpp);
+  EXPECT_EQ(c.hold_observer.cogging.crawl_bpp, c.observer.cogging.crawl_bpp);
   EXPECT_EQ(c.hold_observer.cogging.order, c.observer.cogging.order);
 }
 
@@ -182,7 +182,7 @@ TEST_F(Units, CoggingAndWindowsOfTheObserver) {
   parameters.cogging_order = 17;
   const drive_config_t& c = made();
   EXPECT_EQ(c.observer.cogging.order, 17);
-  expect_near_share(c.observer.cogging.fast_bpp, 10.0 * kBppPerRpm, 1e-4);
+  expect_near_share(c.observer.cogging.crawl_bpp, 10.0 * kBppPerRpm, 1e-4);
   // The acceleration of 1 N m.
   const Motor m;
   expect_near_share(real(c.observer.cogging.bound_q8, 8),

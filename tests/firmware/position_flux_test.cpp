@@ -29,7 +29,7 @@ TEST_F(Sources, AFluxLooksOnFromItsLowerSpeedOn) {
     ASSERT_TRUE(drive_config_load(&inside::config()));
     const estimator_output_t there = {kThere, 0, 0, 32767}, truth = {kHere, bpp_of(rpm), 33, 32767};
     flux_source_follow(&drive, &there);
-    const estimator_input_t in = {&inside::model(), inside::windows(), 0, 0, false, false, false, nullptr};
+    const estimator_input_t in = {&inside::model(), inside::windows(), 0, 0, false, false, false, false, nullptr, 0};
     const estimator_output_t out = flux_source_look_on(&drive, &in, &truth);
     const bool follows = std::abs(rpm) < 100;
     EXPECT_EQ(out.angle_bam == kHere, follows) << rpm;

@@ -205,7 +205,7 @@ TEST_F(Position, TheFluxFollowsUntilItHasAShare) {
   NEEDS("sources/flux");
   for (const double share : {1.0, 0.9}) {
     run_with(POSITION_FLUX_CONV);
-    const estimator_input_t in = {&inside::model(), inside::windows(), 2, 0, false, false, false, nullptr};
+    const estimator_input_t in = {&inside::model(), inside::windows(), 2, 0, false, false, false, false, nullptr, 0};
     const estimator_output_t there = {kThere, 0, 0, 32767}, low = {kHere, 0, 0, 32767};
     flux_source_follow(&drive, &there);
     blend(BLEND_LOW, share);

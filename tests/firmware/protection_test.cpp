@@ -211,7 +211,7 @@ TEST_F(Protection, ResidualsAreJudgedOnce) {
   EXPECT_EQ(inside::state(), DRIVE_RUN) << "nothing was seen yet";
   estimator_window_t w = inside::windows()[0];
   w.change_q19 = raw_change({5.0, 5.0}, w.span_ticks);  // no machine of this model does that
-  const estimator_input_t in = {&inside::model(), &w, 1, 0, false, false, false, nullptr};
+  const estimator_input_t in = {&inside::model(), &w, 1, 0, false, false, false, false, nullptr, 0};
   for (int n = 0; n < 4; ++n) (void)deviation_observer_step(&inside::observer(), &inside::config().observer, &in);
   drive_protect(&drive);
   EXPECT_EQ(inside::fault(), FAULT_SYNCHRONISM);
@@ -279,7 +279,7 @@ TEST_F(Protection, TheFramesOwnSpeedIsWhatItHasTurned) {
       inside::judged_bam() = inside::selected().angle_bam = 0xFFFFF000u;  // and on past the turn's end
       inside::judged_at() = inside::heartbeat() = 65533u;                 // and the counter's
       const estimator_window_t still = {{0, 0}, {0, 0}, {0, 0}, 5000, 5000, true};
-      const estimator_input_t in = {&inside::model(), &still, 1, 0, false, false, false, nullptr};
+      const estimator_input_t in = {&inside::model(), &still, 1, 0, false, false, false, false, nullptr, 0};
       (void)deviation_observer_step(&inside::observer(), &inside::config().observer, &in);
       synchronism_reset(&inside::synchronism());
       inside::heartbeat() = static_cast<std::uint16_t>(inside::heartbeat() + static_cast<unsigned>(since));

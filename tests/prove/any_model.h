@@ -32,7 +32,6 @@ static inline void any_nameplate(machine_model_t* m) {
   m->reluctance_q24 = any_from(-377487360L, 0);
   m->accel_q12 = any_from(1, INT32_MAX - 1);
   m->torque_per_accel_q24 = any_from(8192L, INT32_MAX);
-  m->pole_pairs = any_from(1, 30);
   m->periods_per_second = any_from(2000, 50000L);
   m->period_q30 = any_from(21474L, 536871L);
   for (uint16_t k = 0; k < MACHINE_MAP_POINTS; k++) m->map.points[k] = any_point();
@@ -86,6 +85,8 @@ static inline void any_working_point(machine_model_t* m) {
   m->rs_q24 = any_from(-RS_NOMINAL_MAX_Q24 / 2, 2 * RS_NOMINAL_MAX_Q24);
   m->iq_q20 = any_from(-CURRENT_MAX_Q20, CURRENT_MAX_Q20);
   any_inverse_inductance(m);
+  m->slope.yqq_q30 = any_from(-2 * Y0_END_Q30, 2 * Y0_END_Q30);
+  m->slope.ydq_q30 = any_from(-Y_CROSS_END_Q30, Y_CROSS_END_Q30);
   m->per_yq = any_inverse(31u, 61u);
   any_turn(m);
   m->psi_d_q16 = any_i32;

@@ -13,7 +13,6 @@ static inline deviation_observer_config_t any_observer(const machine_model_t* m)
   const deviation_observer_tuning_t t = {noise_q20, any_i32, any_i32, any_i32, crawl_bpp, any_bool()};
   deviation_observer_design(&c, m, &t);
   c.cogging.order = any_from(0, 60);
-  c.cogging.fast_bpp = c.crawl_bpp;
   c.cogging.bound_q8 = any_from(0, COGGING_BOUND_END_Q8);
   c.zero_vectors_only = any_bool();
   return c;

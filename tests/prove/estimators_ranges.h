@@ -89,14 +89,19 @@ bool deviation_observer_take_mean_residual(deviation_observer_t* s, dq_t* residu
 /*@ requires \valid_read(m); assigns \result \from *m, w_q30; */
 deviation_model_t deviation_model(const machine_model_t* m, int32_t w_q30);
 
-/*@ requires \valid_read(at) && \valid_read(w) && \valid_read(f); assigns \result \from *at, *w, *f;
-    ensures VECTOR_DQ(\result.voltage_q16, 5000 * VOLTS_Q16);
-    ensures VECTOR_DQ(\result.current_q20, 1300 * AMPERES_Q20); */
-deviation_t deviation_of(const deviation_model_t* at, const estimator_window_t* w, const estimator_frame_t* f);
+/*@ requires FROM_TO(count, 1, ESTIMATOR_WINDOWS);
+    requires \valid_read(at) && \valid_read(windows + (0 .. count - 1)) && \valid_read(frames + (0 .. count - 1));
+    requires \valid(seen + (0 .. count - 1));
+    assigns seen[0 .. count - 1] \from *at, windows[0 .. count - 1], frames[0 .. count - 1], iq_q18; */
+void deviation_changes(const deviation_model_t* at, const estimator_window_t windows[],
+                       const estimator_frame_t frames[], uint16_t count, int32_t iq_q18, deviation_change_t seen[]);
+
+/*@ requires \valid_read(c); assigns \result \from *c, span_ticks;
+    ensures VECTOR_DQ(\result.voltage_q16, 5000 * VOLTS_Q16); */
+deviation_t deviation_slope(const deviation_change_t* c, int32_t span_ticks);
 
 /*@ requires \valid_read(m) && \valid_read(w); assigns \result \from *m, *w, angle_bam, speed_bpp;
-    ensures VECTOR_DQ(\result.voltage_q16, 5000 * VOLTS_Q16);
-    ensures VECTOR_DQ(\result.current_q20, 1300 * AMPERES_Q20); */
+    ensures VECTOR_DQ(\result.voltage_q16, 5000 * VOLTS_Q16); */
 deviation_t deviation_evaluate(const machine_model_t* m, const estimator_window_t* w, uint32_t angle_bam,
                                int32_t speed_bpp);
 

@@ -20,7 +20,7 @@ void prove_flux(void) {
   flux_observer_reset(&s, &c, &model);
   (void)flux_adaptation_identify_q24(&model);
   while (any_bool()) {
-    const estimator_input_t in = {&model, 0, 0, any_i32, false, false, false, 0};
+    const estimator_input_t in = {&model, 0, 0, any_i32, false, false, false, false, 0, 0};
     const estimator_output_t now = {any_u32, any_speed(), any_i32, any_from(0, 32767)};
     const flux_period_t p = any_period();
     if (any_bool()) flux_observer_preset(&s, &now, any_dq(CURRENT_MAX_Q20));

@@ -59,7 +59,6 @@ static void any_constants(machine_model_t* m) {
   m->accel_q12 = any_i32;
   m->yd_q30 = any_i32;
   m->yq_q30 = any_i32;
-  m->pole_pairs = any_from(1, 30);
 }
 
 void prove_results(void) {

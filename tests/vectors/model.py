@@ -189,8 +189,8 @@ class Vectors:
         sine, cosine = sincos(self.number() & MASK)
         d, q = (a * cosine + beta * sine) >> 30, (beta * cosine - a * sine) >> 30
         alpha, beta = (d * cosine - q * sine) >> 30, (d * sine + q * cosine) >> 30
-        side = beta * round((1 << 30) * math.sqrt(3) / 2) >> 30
-        return [d, q, alpha, side - toward_zero(alpha, 2), -side - toward_zero(alpha, 2)]
+        side, half = 2 * (beta * round((1 << 31) * math.sqrt(3) / 2) >> 32), alpha >> 1
+        return [d, q, alpha, side - half, -side - half]
 
     def tracking_observer(self) -> Words:
         angle, speed, load, rest = self.tracking

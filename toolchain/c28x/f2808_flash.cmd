@@ -64,7 +64,7 @@ SECTIONS
                 libstillspin_firmware.a<position.*>(.text:_drive_estimate)
                 libstillspin_firmware.a<protection.*>(.text:_drive_protect)
                 libstillspin_firmware.a<current.*>(.text:_drive_control_current)
-                libstillspin_firmware.a<modulation.*>(.text:_drive_modulate, .text:_modulate_into, .text:_write_frame)
+                libstillspin_firmware.a<modulation.*>(.text:_modulate_into, .text:_write_frame)
                 libstillspin_firmware.a<mode.*>(.text:_is_energised)
                 libstillspin_firmware.a<observer.*>(.text:_source_observer)
                 libstillspin_firmware.a<signals.*>(.text:_phase_current)
@@ -72,7 +72,8 @@ SECTIONS
                 libstillspin_firmware.a<hysteresis.*>(.text:_hysteresis_slice)
                 libstillspin_estimators.a<deviation_observer.*>(.text:_deviation_observer_step)
                 libstillspin_estimators.a<regression.*>(.text:_regression_evaluate)
-                libstillspin_estimators.a<deviation.*>(.text:_deviation_frames, .text:_deviation_model)
+                libstillspin_estimators.a<deviation.*>(.text:_deviation_frames, .text:_deviation_model,
+                                                       .text:_deviation_changes)
                 libstillspin_qmath.a<qsum.*>(.text)
               } LOAD = APP, RUN = RAM_CODE, PAGE = 0,
               LOAD_START(_image_ram_code_load), RUN_START(_image_ram_code_run), SIZE(_image_ram_code_size)
@@ -111,7 +112,6 @@ SECTIONS
                 libstillspin_estimators.a<inverse_inductance.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<polarity.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<saturation.*>(.text, .econst, .switch)
-                libstillspin_estimators.a<sensor_match.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<slopes.*>(.econst, .switch)
                 libstillspin_estimators.a<tracking_observer.*>(.text, .econst, .switch)
                 libstillspin_estimators.a<voltage_match.*>(.text, .econst, .switch)

@@ -27,7 +27,7 @@ static bool avv_sees(const parameters_t* p) {
 
 static void take(void) {
   encoder.trim_bam = (uint32_t)q_mul64(parameters.encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
-  encoder.counts_per_turn = parameters.encoder_counts;
+  encoder.per_count_bam = encoder_angle(1, parameters.pole_pairs, parameters.encoder_counts);
   encoder.beside_flux = parameters.flux_beside > 0;
   encoder.beside_avv = avv_sees(&parameters);
 }
@@ -43,16 +43,14 @@ uint32_t encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_tu
 }
 
 // What it shows now, without the offset.
-static uint32_t angle_now(const drive_t* d) {
-  return encoder_angle(hal_encoder_count(), d->model.pole_pairs, encoder.counts_per_turn);
-}
+static uint32_t angle_now(void) { return hal_encoder_count() * encoder.per_count_bam; }
 
 // The present count means the angle in use. The flux may look on.
 static void encoder_begin(const drive_t* d, bool keeps) {
   flux_source_begin(d, keeps);
   if (keeps) return;
   const estimator_output_t* const now = &d->position.selected;
-  encoder.offset_bam = now->angle_bam - angle_now(d);
+  encoder.offset_bam = now->angle_bam - angle_now();
   encoder.aligned_bam = now->angle_bam;
   tracking_observer_preset(&encoder.observer, now->angle_bam, now->speed_bpp, 0);
 }
@@ -68,7 +66,7 @@ static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
   in->frames = 0;
   tracking_observer_t* const o = &encoder.observer;
   tracking_observer_predict(o, in->torque_accel_q8);
-  tracking_observer_correct(o, angle_diff_bam(angle_now(d) + encoder.offset_bam, o->angle_bam),
+  tracking_observer_correct(o, angle_diff_bam(angle_now() + encoder.offset_bam, o->angle_bam),
                             d->config.avv.bandwidth_long_q30);
   estimator_output_t out = {o->angle_bam, o->speed_bpp, o->load_accel_q8, 32767};
   if (encoder.beside_flux) {

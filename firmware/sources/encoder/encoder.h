@@ -9,12 +9,12 @@
 
 typedef struct {
   tracking_observer_t observer;
-  uint32_t offset_bam;   // electrical angle at count 0, found at the start
-  uint32_t aligned_bam;  // where it was found
-  uint32_t trim_bam;     // deliberate turn of its angle
-  int32_t counts_per_turn;
-  bool beside_flux;  // which is compared with it, in the place of AVV
-  bool beside_avv;   // which has active vectors that are long enough to sample in
+  uint32_t offset_bam;     // electrical angle at count 0, found at the start
+  uint32_t aligned_bam;    // where it was found
+  uint32_t trim_bam;       // deliberate turn of its angle
+  uint32_t per_count_bam;  // electrical angle of a count
+  bool beside_flux;        // which is compared with it, in the place of AVV
+  bool beside_avv;         // which has active vectors that are long enough to sample in
 } encoder_t;
 
 extern encoder_t encoder;
