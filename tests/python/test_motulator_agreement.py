@@ -30,8 +30,10 @@ KNEES = ((0.0, 0.0), (0.06, 60.0), (0.12, 60.0), (0.2, -20.0))  # s, rad/s
 # of several steps; over 12 000 edges that leaves 3e-7 A and 5e-7 rad/s.
 RUNGE_KUTTA = (1e-8, 1e-8, 1e-10)
 # The drive's shortest dead time is one tick, in which a current of less than 4e-4 A (200 V on Ld for 10 ns) may come to
-# zero and stay there, which motulator does not know.
+# zero and stay there, which motulator does not know. It is forgotten in L/R = 15 ms; until then 0.96 N m/A of it have
+# moved 0.00455 kg m^2 by 1.3e-3 rad/s.
 DEAD_TICK = 4e-4
+DEAD_TICK_SPEED = 1.3e-3
 TOLERANCE = {"erkstep": RUNGE_KUTTA, "rk4": RUNGE_KUTTA, "reference": (1e-6, 1e-6, 1e-8)}
 
 
@@ -186,7 +188,7 @@ def test_a_run_of_the_drive_agrees_with_motulator(native, ideal):
     amperes, speed, _ = apart(ours, motulator_oracle.published(ideal, first, made, points, at))
     assert np.ptp(ours["speed"]) > 5.0
     assert amperes < DEAD_TICK
-    assert speed < DEAD_TICK
+    assert speed < DEAD_TICK_SPEED
 
 
 @pytest.mark.parametrize(
