@@ -5,14 +5,19 @@
 // Bandwidth over the corner of the integrator.
 #define RESET_RATIO 4
 #define ONE_Q20 1048576L
+#define MICRO 1000000L
+#define HALF_Q30 536870912L
 
 static pi_config_t design_axis(const machine_model_t* m, int32_t inductance_q30, const current_design_t* d) {
   pi_config_t c;
-  const int32_t step_q24 = q_div(d->bandwidth_rads * d->period_us * d->divider, 1000000L, 24);  // a T
+  const int32_t turn_us = d->bandwidth_rads * d->period_us * d->divider;  // a T
   c.kp_q20 = qc_mul(inductance_q30, d->bandwidth_rads, 10);
-  const bool own = d->corner == CURRENT_CORNER_MACHINE;
-  c.ki_q20 = own ? qc_mul_sat(m->nominal_rs_q24, step_q24, 28) : qc_mul_sat(c.kp_q20, step_q24, 24) / RESET_RATIO;
-  c.release_q20 = 4 * q_limit(q_div(c.ki_q20, c.kp_q20, 20), ONE_Q20 / 4);
+  int32_t corner_q30 = q_div(turn_us, MICRO * RESET_RATIO, 30);
+  // R a T of a L.
+  if (d->corner == CURRENT_CORNER_MACHINE)
+    corner_q30 = q_div(qc_mul_sat(m->nominal_rs_q24, q_div(turn_us, MICRO, 24), 28), c.kp_q20, 30);
+  c.corner_q32 = 4 * q_limit(corner_q30, HALF_Q30 - 1);
+  c.release_q20 = 4 * q_min(q_shr(c.corner_q32, 12), ONE_Q20 / 4);
   return c;
 }
 
@@ -23,8 +28,8 @@ void current_controller_design(current_controller_config_t* c, const machine_mod
 }
 
 void current_controller_reset(current_controller_t* s) {
-  pi_reset(&s->d, 0);
-  pi_reset(&s->q, 0);
+  pi_reset(&s->d);
+  pi_reset(&s->q);
 }
 
 void current_controller_limited(current_controller_t* s, const current_controller_config_t* c, dq_t excess_q16) {

@@ -3,7 +3,6 @@
 #define PER_TICK_Q32 429496L     // 1 / ESTIMATOR_PERIOD_TICKS, rounded down: half a period of ticks stays in 31 bits
 #define LOST_MAX_Q17 196608000L  // 1500 V over the resistance: more the samples alone can say
 #define REST_BITS 28u            // 2048 A per period and rad, Q17
-#define DAMPING_BITS 23u         // 2 per period, Q22
 #define SEGMENT_BITS 12u         // a segment, Q12
 #define MORE_BITS 26u            // 1/16 A per V and period: with it h_angle stays in its format
 
@@ -27,7 +26,7 @@ void deviation_frames(const estimator_window_t windows[], uint16_t count, uint32
 
 // Element of A = Y R - w K, to 2.4e-7.
 static int32_t damping_q29(const machine_model_t* m, int32_t y_q30, int32_t w_q30, int32_t k_q24) {
-  return q_within_bits(q_mul_hi(y_q30, m->rs_q24) - q_mul_hi(w_q30, k_q24), DAMPING_BITS) * 128;
+  return q_within_bits(q_mul_hi(y_q30, m->rs_q24) - q_mul_hi(w_q30, k_q24), DEVIATION_DAMPING_BITS) * 128;
 }
 
 deviation_model_t deviation_model(const machine_model_t* m, int32_t w_q30) {

@@ -20,7 +20,8 @@
 
 #define DEVIATION_PERIOD_Q17 ((int32_t)1310720000L)  // ESTIMATOR_PERIOD_TICKS
 
-#define DEVIATION_DAMPING_END_Q22 8388608L  // 2 per period
+#define DEVIATION_DAMPING_BITS 23u  // 2 per period, Q22
+#define DEVIATION_DAMPING_END_Q22 ((int32_t)1 << DEVIATION_DAMPING_BITS)
 
 /// The model at a speed. A beyond 2 per period is taken as 2.
 typedef struct {

@@ -3,7 +3,6 @@
 #include "hal/qmath/qcall.h"
 
 #define ONE_Q30 1073741823L
-#define COVARIANCE_BITS 29u               // DEVIATION_VARIANCE_MAX
 #define BOOST_SHIFT 9u                    // the boost fades within 51 ms
 #define STEP_AGE_Q30 268435456L           // 16 periods
 #define STEP_AGE_UNMAPPED_Q30 536870912L  // 32 periods
@@ -116,10 +115,10 @@ static void take_information(deviation_observer_t* s) {
   const gain_t kl = gain_row(inverse, s->p_al, s->p_sl);
   // The rows are the new covariance itself; only the load's variance, which nothing measures, is left.
   s->p_aa = positive(ka.a);
-  s->p_as = q_within_bits(ka.s, COVARIANCE_BITS);
+  s->p_as = q_within_bits(ka.s, DEVIATION_VARIANCE_BITS);
   s->p_ss = positive(p_ss);
-  s->p_al = q_within_bits(kl.a, COVARIANCE_BITS);
-  s->p_sl = q_within_bits(kl.s, COVARIANCE_BITS);
+  s->p_al = q_within_bits(kl.a, DEVIATION_VARIANCE_BITS);
+  s->p_sl = q_within_bits(kl.s, DEVIATION_VARIANCE_BITS);
   s->p_ll = positive(q_sub_sat(s->p_ll, q_mul_add(s->p_al, gl.a, s->p_sl, gl.s, 16)));
   limit(&s->p_aa, &s->p_as, &s->p_al);
   limit(&s->p_ss, &s->p_as, &s->p_sl);

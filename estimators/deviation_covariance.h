@@ -6,7 +6,8 @@
 
 #include "estimators/deviation_observer.h"
 
-#define DEVIATION_VARIANCE_MAX (512L * 1048576L)  // Q20
+#define DEVIATION_VARIANCE_BITS 29u  // 512, Q20
+#define DEVIATION_VARIANCE_MAX ((int32_t)1 << DEVIATION_VARIANCE_BITS)
 
 // How far the boost of the load's noise (noise_boost_q30) has faded when a step may be noticed again.
 #define DEVIATION_BOOST_AGAIN_Q30 858993459L  // at a crawl, after 11 ms

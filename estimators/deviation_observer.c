@@ -127,10 +127,10 @@ static void note_load(deviation_observer_t* s, const deviation_observer_config_t
 
 static const deviation_residual_t no_residual = {0, 0, 0, 0};
 
-bool deviation_observer_take_mean_residual(deviation_observer_t* s, dq_t* residual_q20, int32_t* span_ticks,
-                                           int32_t* periods) {
-  const deviation_residual_t sum = s->residual;
-  s->residual = no_residual;
+bool deviation_take_mean_residual(deviation_residual_t* left, dq_t* residual_q20, int32_t* span_ticks,
+                                  int32_t* periods) {
+  const deviation_residual_t sum = *left;
+  *left = no_residual;
   if (sum.span_ticks <= 0) return false;
   const int32_t per_span_q17 = DEVIATION_PERIOD_Q17 / sum.span_ticks;
   residual_q20->d = q_sat64(q_shr64(q_product(sum.d_q11, per_span_q17), 8));

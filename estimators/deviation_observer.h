@@ -45,7 +45,7 @@ typedef struct {
   bool zero_vectors_only;
 } deviation_observer_config_t;
 
-/// What the observer has left unexplained since somebody last took it (deviation_observer_take_mean_residual).
+/// What the observer has left unexplained since somebody last took it (deviation_take_mean_residual).
 typedef struct {
   int32_t d_q11, q_q11;  // sum of what is left of the current's changes, A
   int32_t span_ticks;    // of all windows
@@ -113,8 +113,8 @@ static inline bool deviation_observer_update_is_urgent(const deviation_observer_
 
 /// Mean residual by spans, A per period Q20, and mean span of a period since the last call; false where there were
 /// none.
-bool deviation_observer_take_mean_residual(deviation_observer_t* s, dq_t* residual_q20, int32_t* span_ticks,
-                                           int32_t* periods);
+bool deviation_take_mean_residual(deviation_residual_t* left, dq_t* residual_q20, int32_t* span_ticks,
+                                  int32_t* periods);
 
 estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviation_observer_config_t* c,
                                            const estimator_input_t* in);

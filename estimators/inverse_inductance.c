@@ -32,6 +32,6 @@ void inverse_inductance_step(machine_model_t* m, const regression_t* r, q_invers
 
 void inverse_inductance_preset(machine_model_t* m, int32_t mean_q30, int32_t half_q30) {
   const inverse_inductance_t y = nominal(m);
-  trim(m, &y, q_sub_sat(mean_q30, y.mean_q30), q_sub_sat(half_q30, y.half_q30));
+  trim(m, &y, qc_sub_sat(mean_q30, y.mean_q30), qc_sub_sat(half_q30, y.half_q30));
   machine_model_settle(m);
 }

@@ -23,8 +23,8 @@ typedef struct {
 
 static void project(projection_t* p, const deviation_change_t* c, dq_t part_q20, int32_t share_q30) {
   const dq_t v_q14 = {q_shr(c->voltage_q17.d, 3) - p->mean_q14.d, q_shr(c->voltage_q17.q, 3) - p->mean_q14.q};
-  p->spread_q28 = q_mac(q_mac(p->spread_q28, q_mul_floor(v_q14.d, share_q30, 30), v_q14.d),
-                        q_mul_floor(v_q14.q, share_q30, 30), v_q14.q);
+  p->spread_q28 =
+      q_mac(q_mac(p->spread_q28, q_mul_hi(v_q14.d * 4, share_q30), v_q14.d), q_mul_hi(v_q14.q * 4, share_q30), v_q14.q);
   p->dd_q34 = q_mac(p->dd_q34, part_q20.d, v_q14.d);
   p->dq_q34 = q_mac(p->dq_q34, part_q20.d, v_q14.q);
   p->qd_q34 = q_mac(p->qd_q34, part_q20.q, v_q14.d);

@@ -47,7 +47,7 @@ static wiring_t name_of(sight_t a, sight_t b) {
 // What a code of error in a quarter of the windows would look like.
 static int32_t floor_of(const axis_t* s, int32_t code_q20) {
   const uint32_t volts_q4 = q_sqrt64((uint64_t)q_product(q_max(s->spread_q8, 0), s->count));
-  return q_sat64(q_shr64(q_product(code_q20, (int32_t)volts_q4), 10));
+  return qc_mul_sat(code_q20, (int32_t)volts_q4, 10);
 }
 
 static bool is_full(int32_t sum) { return qc_abs_sat(sum) == INT32_MAX; }

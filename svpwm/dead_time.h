@@ -18,21 +18,28 @@ typedef struct {
   int32_t band_q20;        // current below which the sign is not trusted, A, 0.01..2
   int32_t drop_q16;        // on-state drop of a device, V, 0..5 (its resistance belongs to Rs)
   // Set by dead_time_design. Currents at the edges are shares of the band.
-  int32_t per_band_q24;                         // 1 / band, 1/A
-  int32_t middle_q13;                           // delay without a current, ticks, and a half for rounding
-  int16_t range_ticks;                          // of the delay, from one sign to the other
-  uint32_t doubt_q12;                           // edge_band / band, just below
-  int32_t third_per_amp_q21, side_per_amp_q21;  // drop / (3 band), drop / (sqrt(3) band), V per A
+  int32_t per_band_q24;         // 1 / band, 1/A
+  int32_t middle_q13;           // delay without a current, ticks, and a half for rounding
+  int16_t range_ticks;          // of the delay, from one sign to the other
+  uint32_t doubt_q12;           // edge_band / band, just below
+  int32_t third_q16, side_q16;  // drop / 3, drop / sqrt(3), V
 } dead_time_config_t;
 
 /// Derives the constants; the first five members are set by hand.
 void dead_time_design(dead_time_config_t* c);
 
-#define DEAD_TIME_BAND_Q12 4096L
+#define DEAD_TIME_BAND_BITS 12u
+
+/// What the phases carry as shares of the band.
+static inline abc_t dead_time_shares_q12(const dead_time_config_t* c, ab_t current_q20) {
+  const abc_t i = frame_inverse_clarke(current_q20);
+  const abc_t shares = {q_mul_hi(i.a, c->per_band_q24), q_mul_hi(i.b, c->per_band_q24), q_mul_hi(i.c, c->per_band_q24)};
+  return shares;
+}
 
 /// Delay of an edge, ticks. The current is a share of the band, positive where it blocks the edge.
 static inline int32_t dead_time_delay_ticks(const dead_time_config_t* c, int32_t blocking_q12) {
-  const int32_t in_band_q12 = q_clamp(blocking_q12, -DEAD_TIME_BAND_Q12, DEAD_TIME_BAND_Q12 - 1);
+  const int32_t in_band_q12 = q_within_bits(blocking_q12, DEAD_TIME_BAND_BITS);
   return q_shr(c->middle_q13 + (int16_t)in_band_q12 * (int32_t)c->range_ticks, 13);
 }
 
@@ -42,16 +49,19 @@ static inline bool dead_time_is_in_doubt(const dead_time_config_t* c, int32_t bl
   return (uint32_t)blocking_q12 + c->doubt_q12 <= 2u * c->doubt_q12;
 }
 
-/// Voltage lost in the devices at these currents, V Q16: subtract it from a leg model, or add it to a command.
-static inline ab_t dead_time_drop_q16(const dead_time_config_t* c, ab_t current_q20) {
-  const abc_t i = frame_inverse_clarke(current_q20);
-  const int32_t x = q_min(q_max(i.a, -c->band_q20), c->band_q20);
-  const int32_t y = q_min(q_max(i.b, -c->band_q20), c->band_q20);
-  const int32_t z = q_min(q_max(i.c, -c->band_q20), c->band_q20);
-  // Q27 times Q21: the upper word is Q16.
-  const ab_t drop = {q_mul_hi((2 * x - y - z) * 128, c->third_per_amp_q21),
-                     q_mul_hi((y - z) * 128, c->side_per_amp_q21)};
+/// Voltage lost in the devices at these shares, V Q16: subtract it from a leg model, or add it to a command.
+static inline ab_t dead_time_drop_of_q16(const dead_time_config_t* c, abc_t shares_q12) {
+  const int32_t x = q_within_bits(shares_q12.a, DEAD_TIME_BAND_BITS);
+  const int32_t y = q_within_bits(shares_q12.b, DEAD_TIME_BAND_BITS);
+  const int32_t z = q_within_bits(shares_q12.c, DEAD_TIME_BAND_BITS);
+  const ab_t drop = {q_shr((2 * x - y - z) * c->third_q16, DEAD_TIME_BAND_BITS),
+                     q_shr((y - z) * c->side_q16, DEAD_TIME_BAND_BITS)};
   return drop;
+}
+
+/// The same at these currents.
+static inline ab_t dead_time_drop_q16(const dead_time_config_t* c, ab_t current_q20) {
+  return dead_time_drop_of_q16(c, dead_time_shares_q12(c, current_q20));
 }
 
 #endif

@@ -4,9 +4,8 @@ void svpwm_compensate_edges(const dead_time_config_t* c, const sampling_config_t
                             const svpwm_carried_t* carried, svpwm_pattern_t* pattern, uint16_t sent[]) {
   const svpwm_pulses_t* const p = &pattern->pulses;
   svpwm_ripple_legs_t legs;
-  svpwm_ripple_walk_t walk =
-      svpwm_ripple_walk(p, frame_inverse_clarke(carried->current_q20), carried->inverse_inductance_q30,
-                        carried->link_q16, c->per_band_q24, &legs);
+  svpwm_ripple_walk_t walk = svpwm_ripple_walk(p, carried->shares_q12, carried->inverse_inductance_q30,
+                                               carried->link_q16, c->per_band_q24, &legs);
   svpwm_finder_t finder = svpwm_finder(sampling, pattern);
   for (unsigned k = 0; k < SVPWM_EDGES; k++) {
     const unsigned edge = p->order[k];

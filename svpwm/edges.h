@@ -9,7 +9,7 @@
 
 /// What the legs carry in the period, for the current at an edge.
 typedef struct {
-  ab_t current_q20;                // mean phase currents, alpha-beta, A
+  abc_t shares_q12;                // mean currents as shares of the dead time's band
   int32_t inverse_inductance_q30;  // mean T/L, A per V and period
   int32_t link_q16;                // DC link, V
 } svpwm_carried_t;

@@ -43,9 +43,9 @@ typedef struct {
 // 4 * 2^32 / (3 N^2 * 16), of amperes in Q20, halved: Q31.
 #define SVPWM_RIPPLE_GAIN_Q31 1921535841L
 
-/// inverse_inductance_q30: mean T/L, A per V and period; link_q16: DC link, V; together taken as 1024 A at most. Mean
-/// currents up to 1400 A. per_unit_q24: of the unit, up to 100 per A.
-static inline svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, abc_t mean_q20,
+/// inverse_inductance_q30: mean T/L, A per V and period; link_q16: DC link, V; together taken as 1024 A at most.
+/// mean_q12: within 7.4e8, 1400 A of the smallest unit and more. per_unit_q24: of the unit of current, up to 100 per A.
+static inline svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, abc_t mean_q12,
                                                     int32_t inverse_inductance_q30, int32_t link_q16,
                                                     int32_t per_unit_q24, svpwm_ripple_legs_t* legs) {
   const uint32_t a = SVPWM_RIPPLE_PER_TICK * (uint32_t)svpwm_on_ticks(p, 0);
@@ -57,9 +57,9 @@ static inline svpwm_ripple_walk_t svpwm_ripple_walk(const svpwm_pulses_t* p, abc
   legs->on3[0] = 3u * a;
   legs->on3[1] = 3u * b;
   legs->on3[2] = 3u * c;
-  legs->mean_q12[0] = q_mul_hi(mean_q20.a, per_unit_q24);
-  legs->mean_q12[1] = q_mul_hi(mean_q20.b, per_unit_q24);
-  legs->mean_q12[2] = q_mul_hi(mean_q20.c, per_unit_q24);
+  legs->mean_q12[0] = mean_q12.a;
+  legs->mean_q12[1] = mean_q12.b;
+  legs->mean_q12[2] = mean_q12.c;
   legs->gain_q44 = q_mul_hi(gain_q52, per_unit_q24);
   return w;
 }

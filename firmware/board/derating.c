@@ -54,7 +54,7 @@ int32_t board_lasting_current(void) {
 
 // Square of the current, of that which may flow for ever; saturated at eleven times that current.
 static int32_t heating_q24(int32_t ever_q20) {
-  const dq_t i = drive.control.measured_q20;
+  const dq_t i = drive.estimate.measured_q20;
   const int32_t share_q12 = q_min(q_div(q_hypot(i.d, i.q), ever_q20, 12), SHARE_END_Q12);
   return drive_is_energised() ? share_q12 * share_q12 : 0;
 }

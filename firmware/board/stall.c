@@ -21,19 +21,19 @@
 
 // How fast the shaft turns against the reference; 0 where it does not.
 static int32_t back_bpp(const drive_t* d) {
-  const int32_t speed_bpp = d->position.selected.speed_bpp;
+  const int32_t speed_bpp = d->estimate.selected.speed_bpp;
   return q_max((d->control.ramp.value > 0) ? qc_sub_sat(0, speed_bpp) : speed_bpp, 0);
 }
 
 static void begin_anew(const drive_t* d, int32_t now_bpp, bool slows) {
   board.stalled_ms = 0;
-  board.stall_from_bam = d->position.selected.angle_bam;
+  board.stall_from_bam = d->estimate.selected.angle_bam;
   board.stall_back_bpp = now_bpp;
   board.stall_slows = slows;
 }
 
 static bool has_speed_reference(const drive_t* d) {
-  return d->state == DRIVE_RUN && d->control.ramp.value != 0 && qc_abs_sat(d->position.selected.speed_bpp) < FAST_BPP;
+  return d->state == DRIVE_RUN && d->control.ramp.value != 0 && qc_abs_sat(d->estimate.selected.speed_bpp) < FAST_BPP;
 }
 
 // By a sixteenth at least: of its largest speed since it began, and once it slows down, of its speed at the last time.
@@ -50,9 +50,9 @@ static int32_t least_way_bam(const drive_t* d) {
 
 // The way in the direction of the reference; one that is pushed back counts from where it has been pushed to.
 static int32_t way_bam(const drive_t* d) {
-  const int32_t forth = angle_diff_bam(d->position.selected.angle_bam, board.stall_from_bam);
+  const int32_t forth = angle_diff_bam(d->estimate.selected.angle_bam, board.stall_from_bam);
   const int32_t way = (d->control.ramp.value > 0) ? forth : qc_sub_sat(0, forth);
-  if (way < 0) board.stall_from_bam = d->position.selected.angle_bam;
+  if (way < 0) board.stall_from_bam = d->estimate.selected.angle_bam;
   return way;
 }
 
@@ -62,7 +62,7 @@ drive_fault_t board_follow_shaft(void) {
   const bool gets_on = !has_speed_reference(d) || way_bam(d) > least_way_bam(d);
   const bool slows = !gets_on && is_slowing(now_bpp);
   if (gets_on || slows) begin_anew(d, now_bpp, slows);
-  if ((d->limits & LIMIT_CURRENT) == 0) {
+  if ((d->control.limits & LIMIT_CURRENT) == 0) {
     board.stalled_ms -= (board.stalled_ms < RELIEF_MS) ? board.stalled_ms : RELIEF_MS;
     return FAULT_NONE;
   }

@@ -40,6 +40,7 @@ typedef struct {
   uint16_t index;
   uint16_t turn;  // period of those in which the sums take turns
   int32_t tick;
+  int32_t held_q20;             // the largest that holds the rotor
   int32_t first_q20, step_q20;  // the first level, and by how much each is above the one before
   dead_time_config_t one_volt;  // the devices, if their drop were that
   bool at_zero;                 // no pulses but those of the voltage: the windows are the zero vector's
@@ -77,6 +78,7 @@ typedef struct {
 typedef struct {
   int64_t speed, voltage_q, current_q, current_d;
   int32_t periods;
+  int32_t torque_periods;  // of current_q: at a steady speed those behind the others
 } spin_sums_t;
 
 typedef struct {
@@ -84,7 +86,8 @@ typedef struct {
   uint16_t leg;
   uint32_t angle_bam;  // of the last period
   int32_t tick;
-  uint16_t waited;  // for a turn's end, periods
+  uint16_t waited;   // for a turn's end, periods
+  int32_t part_q20;  // what i_d changes by in a period, A
   spin_sums_t station[SPIN_STATIONS];
   spin_sums_t ramp[SPIN_RAMPS];
 } spin_t;

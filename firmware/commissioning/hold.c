@@ -37,19 +37,22 @@ static void design_hold(const drive_t* d, commissioning_t* c) {
 }
 
 static int32_t holding_q20(const drive_t* d) {
-  const estimator_output_t* const p = &d->position.selected;
+  const estimator_output_t* const p = &d->estimate.selected;
   const int32_t error_bam = angle_diff_bam(commissioning.target_bam, p->angle_bam);
   const int32_t damping_q30 = commissioning.damping_q30;
   const int32_t stiffness_q30 = qc_mul(damping_q30, damping_q30, 32);
   const int32_t command_q8 =
       qc_sub_sat(qc_mul_sat(error_bam, stiffness_q30, 22), qc_mul_sat(p->speed_bpp, damping_q30, 22));
-  const int32_t torque_q20 = qc_mul_sat(qc_add_sat(command_q8, p->load_accel_q8), d->model.torque_per_accel_q24, 20);
+  const int32_t torque_q20 =
+      qc_mul_sat(qc_add_sat(command_q8, p->load_accel_q8), d->estimate.model.torque_per_accel_q24, 20);
   return qc_over(torque_q20, d->control.per_torque_constant, 24);
 }
 
 // A rotor that follows the current swings about it, and next to nothing brakes that: the current across goes against
 // the EMF that the voltage across shows, as if that axis were closed by 1/16 of L/T.
-static int32_t braking_q20(const drive_t* d) { return qc_mul_sat(-d->control.command_q16.q, d->model.yq_q30, 22); }
+static int32_t braking_q20(const drive_t* d) {
+  return qc_mul_sat(-d->control.command_q16.q, d->estimate.model.yq_q30, 22);
+}
 
 // Braking has a low-pass of 64 periods, so that the current controller does not answer to itself.
 void commissioning_hold(drive_t* d) {
@@ -67,7 +70,7 @@ bool commissioning_align(drive_t* d) {
     if (c->uniform) d->flags.unseen = KNOWN_ROTOR;
     d->control.references.closed = true;
     design_hold(d, c);
-    c->target_bam = d->position.selected.angle_bam;
+    c->target_bam = d->estimate.selected.angle_bam;
     const uint32_t near_bam = c->target_bam + ((uint32_t)c->uniform << QUARTER_BITS);
     const int32_t sixths = (int32_t)q_div((int32_t)(near_bam / 2u), SIXTH_BAM / 2, 0);
     c->goal_bam = (uint32_t)sixths * (uint32_t)SIXTH_BAM;
@@ -77,21 +80,21 @@ bool commissioning_align(drive_t* d) {
   commissioning_hold(d);
   if (c->uniform) commissioning_set_d(d, d->config.values.current_limit / 2);
   if (c->tick < (c->uniform ? 2 : 1) * SETTLE_PERIODS || !start_has_exclusive_slot(d)) return false;
-  c->model = d->model;
+  c->model = d->estimate.model;
   machine_model_move(&c->model, 0);
   return true;
 }
 
 // AVV alone, or no measurement at all and the angle by the torque. A machine without an axis is not measured at rest:
 // its rotor turns to where the current points.
-estimator_output_t commissioning_estimate(drive_t* d, estimator_input_t* in) {
+estimator_output_t commissioning_estimate(const drive_t* d, drive_estimate_t* e, estimator_input_t* in) {
   if (commissioning.uniform) {
     const estimator_output_t still = {commissioning.target_bam, 0, 0, 0};
     return still;
   }
-  if (!commissioning.predicting) return position_sources[POSITION_AVV]->step(d, in);
-  if (d->schedule.moves) machine_model_follow(&d->model, d->control.measured_q20.q);
-  tracking_observer_t* const o = &d->position.avv.observer;
+  if (!commissioning.predicting) return position_sources[POSITION_AVV]->step(d, e, in);
+  if (d->schedule.moves) machine_model_follow(&e->model, e->measured_q20.q);
+  tracking_observer_t* const o = &e->avv.observer;
   tracking_observer_predict(o, qc_add_sat(in->torque_accel_q8, o->load_accel_q8));  // the load as of now is left out
   const estimator_output_t out = {o->angle_bam, o->speed_bpp, o->load_accel_q8, 32767};
   return out;
@@ -111,11 +114,11 @@ bool commissioning_has_pair(const drive_t* d) {
 
 static void see(const drive_t* d, uint16_t first, uint16_t count, deviation_t slope[]) {
   const estimator_window_t* const w = &d->samples.windows[first];
-  const estimator_frame_t* const f = &d->position.frames[first];
+  const estimator_frame_t* const f = &d->estimate.frames[first];
   const deviation_model_t at =
-      deviation_model(&commissioning.model, machine_speed_rad_q30(d->position.selected.speed_bpp));
+      deviation_model(&commissioning.model, machine_speed_rad_q30(d->estimate.selected.speed_bpp));
   deviation_change_t seen[2];
-  deviation_changes(&at, w, f, count, q_shr(d->position.seen_q20.q, 2), seen);
+  deviation_changes(&at, w, f, count, q_shr(d->estimate.seen_q20.q, 2), seen);
   for (uint16_t k = 0; k < count; k++) slope[k] = deviation_slope(&seen[k], w[k].span_ticks);
 }
 

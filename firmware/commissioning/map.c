@@ -49,7 +49,7 @@ static void begin_train(drive_t* d) {
   const int32_t accel_q8 = q_max(drive_accel_q8(d, 0, map_level_q20(m, m->level)), 1);
   const int32_t square = q_div(EXCURSION_BAM, accel_q8, 8);
   m->segment = q_clamp((int32_t)q_sqrt32((uint32_t)square), SEGMENT_MIN, SEGMENT_MAX);
-  const int32_t swing_q20 = qc_mul(d->samples.link_q16, d->model.yq_q30, 27);
+  const int32_t swing_q20 = qc_mul(d->samples.link_q16, d->estimate.model.yq_q30, 27);
   // A slow train takes the shaft far: at least a quarter.
   const int32_t most_q20 = q_max(q_min(drive.config.values.current_limit / SLOPE_STEPS, swing_q20), 4);
   m->step_q20 = q_clamp(m->slope_q20, q_shr(most_q20, 2), most_q20);
@@ -65,7 +65,7 @@ static void begin_train(drive_t* d) {
 
 // Follows what the current of the last period did to the shaft.
 static void predict(const drive_t* d, map_t* m) {
-  const dq_t i = d->control.measured_q20;
+  const dq_t i = d->estimate.measured_q20;
   m->speed_q8 = qc_add_sat(m->speed_q8, drive_accel_q8(d, i.d, i.q));
   m->position_bam = qc_add_sat(m->position_bam, q_shr(m->speed_q8, 8));
 }
@@ -77,7 +77,7 @@ static void add_period(const drive_t* d, map_t* m, uint16_t segment) {
   map_group_t* const g = &m->group[m->level][2u * (m->train % 2u) + is_negative(m, segment)];
   if (!commissioning_add_pair(d, &g->tensor)) return;
   q_gather(&g->position, m->position_bam);
-  q_gather(&g->current, d->control.measured_q20.q);
+  q_gather(&g->current, d->estimate.measured_q20.q);
 }
 
 // The second of two equal segments need not settle.
@@ -93,7 +93,7 @@ static void follow(drive_t* d, map_t* m, int32_t target_q20) {
   d->control.references.current_q20.q = m->plan[1];
   m->plan[1] = last;
   m->plan[0] = q_limit(q_clamp(target_q20, last - m->step_q20, last + m->step_q20), d->config.values.current_limit);
-  d->control.references.feed_forward_q16 = q_div(m->plan[0] - last, d->model.yq_q30, 26);
+  d->control.references.feed_forward_q16 = q_div(m->plan[0] - last, d->estimate.model.yq_q30, 26);
 }
 
 // What a level has of WANTED_PERIODS, by the group of the last segment, which is filled last.
@@ -120,7 +120,7 @@ static void run_train(drive_t* d, map_t* m) {
   m->judge = m->train % (2u * PLACES) == 0u;
   m->tick = 0;
   commissioning.predicting = false;
-  machine_model_follow(&d->model, 0);
+  machine_model_follow(&d->estimate.model, 0);
 }
 
 // Before every second train the shaft moves on by 45 degrees electrical: over eight places cogging averages out, and so
@@ -183,7 +183,7 @@ static void begin(const drive_t* d, map_t* m) {
   m->judge = false;
   m->plan[0] = 0;
   m->plan[1] = 0;
-  commissioning.target_bam = d->position.selected.angle_bam;
+  commissioning.target_bam = d->estimate.selected.angle_bam;
   tensor_reset(&commissioning.unsaturated);
 }
 

@@ -21,7 +21,7 @@ void commissioning_release_pulses(void);
 /// A pair of windows at rest and without current, for the inductances there.
 void commissioning_add_still(const drive_t* d);
 /// Angle and speed while the shaft is held (commissioning/hold.c).
-estimator_output_t commissioning_estimate(drive_t* d, estimator_input_t* in);
+estimator_output_t commissioning_estimate(const drive_t* d, drive_estimate_t* e, estimator_input_t* in);
 /// Whether the period has two windows under opposite vectors.
 bool commissioning_has_pair(const drive_t* d);
 /// One of them (0, 1) against the model, in the frame that it was turned into.

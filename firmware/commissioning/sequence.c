@@ -34,8 +34,8 @@ static bool at_once(drive_t* d) {
 static const phase_t phases[] = {{at_once, 0},
                                  {commissioning_align, 0},
                                  {commissioning_climb, 8},
-                                 {commissioning_spin, 178},
-                                 {commissioning_map, 220},
+                                 {commissioning_spin, 173},
+                                 {commissioning_map, 242},
                                  {at_once, 1000}};
 
 static void commissioning_begin(drive_t* d, drive_state_t behind) {
@@ -65,7 +65,7 @@ static void next_phase(drive_t* d) {
   c->tick = 0;
   d->flags.frozen = c->phase != COMMISSIONING_ALIGN;
   if (c->phase != COMMISSIONING_EVALUATE) {
-    c->mismatch_q30 = d->trim.mismatch_q30;
+    c->mismatch_q30 = d->estimate.trim.mismatch_q30;
     return;
   }
   drive_open_power_stage(d);

@@ -190,12 +190,14 @@ typedef struct {
   int32_t speed, voltage_q16, current_q20;
 } steady_t;
 
-// The voltage without that of the d-axis current.
+// The voltage without that of the d-axis current. That of R i is taken off for the torque current as it was without
+// one: where the reluctance adds to the torque or takes from it, that is a little more or less.
 static steady_t steady(const spin_sums_t* s, int32_t ld_q30) {
   const int32_t flux_q28 = qc_mul_sat(ld_q30, over(s->current_d, s->periods), 22);
   const int32_t speed = over(s->speed, s->periods);
   const int32_t armature_q16 = fit_ratio((int64_t)flux_q28 * speed, BPP_PER_RAD_Q12, 0);
-  const steady_t m = {speed, qc_sub_sat(over(s->voltage_q, s->periods), armature_q16), over(s->current_q, s->periods)};
+  const steady_t m = {speed, qc_sub_sat(over(s->voltage_q, s->periods), armature_q16),
+                      over(s->current_q, s->torque_periods)};
   return m;
 }
 

@@ -82,6 +82,7 @@ static void place(const drive_t* d) {
   commissioning.map.most_q20 = room;
   // A rotor without saliency follows: nothing holds it.
   int32_t most = commissioning.uniform ? limit : q_clamp(held_q20(), 0, limit);
+  s->held_q20 = most;
   int32_t sign = 1;
   const int32_t weakening = q_min(limit, v->weakening_limit);
   if (weakening > most && ripple > q_shr(most * 5, 4)) {
@@ -143,9 +144,9 @@ static void add_one(const drive_t* d, staircase_t* s) {
   if (s->at_zero ? d->samples.count == 0u : !commissioning_has_pair(d)) return;
   const uint16_t last = d->samples.count / 2u;  // of one or two: the zero vector's
   if (s->turn < TURN_PERIODS) {
-    const rotation_t r = frame_rotation(d->position.selected.angle_bam);
-    dq_t i = d->control.measured_q20;
-    if (s->at_zero) i.d = q_limit(d->position.frames[last].current_q18.d, DRIVE_CURRENT_END_Q20 / 4) * 4;
+    const rotation_t r = frame_rotation(d->estimate.selected.angle_bam);
+    dq_t i = d->estimate.measured_q20;
+    if (s->at_zero) i.d = q_limit(d->estimate.frames[last].current_q18.d, DRIVE_CURRENT_END_Q20 / 4) * 4;
     add_period(d, l, r, i);
     if (!s->at_zero) add_sag(d, l, r);
   } else {

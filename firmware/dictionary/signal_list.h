@@ -11,15 +11,15 @@
 PLACE(10)
 SIGNAL(state, NONE, 0, DRIVE, d->state, "state of the drive")
 SIGNAL(fault, NONE, 0, DRIVE, d->fault, "latched fault")
-SIGNAL(limit, NONE, 0, ASKED, d->limits, "active limits, one bit each")
-SIGNAL(angle, TURN, 32, ROTOR, d->position.selected.angle_bam, "electrical angle in use, at the start of the period")
-SIGNAL(speed, RPM, 16, ROTOR, SIGNAL_RPM(d->position.selected.speed_bpp), "mechanical speed in use")
-SIGNAL(angle_low, TURN, 32, ROTOR, d->position.low.angle_bam, "electrical angle of the low-speed estimator")
-SIGNAL(angle_avv, TURN, 32, ROTOR, d->position.high.angle_bam, "electrical angle of the AVV estimator")
-SIGNAL(weight, NONE, 15, DRIVE, d->position.blend.share_q15, "share of the low-speed estimator in the blend")
+SIGNAL(limit, NONE, 0, ASKED, d->control.limits, "active limits, one bit each")
+SIGNAL(angle, TURN, 32, ROTOR, d->estimate.selected.angle_bam, "electrical angle in use, at the start of the period")
+SIGNAL(speed, RPM, 16, ROTOR, SIGNAL_RPM(d->estimate.selected.speed_bpp), "mechanical speed in use")
+SIGNAL(angle_low, TURN, 32, ROTOR, d->estimate.low.angle_bam, "electrical angle of the low-speed estimator")
+SIGNAL(angle_avv, TURN, 32, ROTOR, d->estimate.high.angle_bam, "electrical angle of the AVV estimator")
+SIGNAL(weight, NONE, 15, DRIVE, d->estimate.blend.share_q15, "share of the low-speed estimator in the blend")
 SIGNAL(speed_reference, RPM, 16, ASKED, SIGNAL_RPM(d->control.ramp.value), "speed reference after the ramp")
-SIGNAL(current_d, A, 20, FRAME, d->control.measured_q20.d, "measured d-axis current, mean of the period")
-SIGNAL(current_q, A, 20, FRAME, d->control.measured_q20.q, "measured q-axis current")
+SIGNAL(current_d, A, 20, FRAME, d->estimate.measured_q20.d, "measured d-axis current, mean of the period")
+SIGNAL(current_q, A, 20, FRAME, d->estimate.measured_q20.q, "measured q-axis current")
 SIGNAL(current_d_reference, A, 20, ASKED, d->control.references.current_q20.d, "d-axis current reference")
 SIGNAL(current_q_reference, A, 20, ASKED, d->control.references.current_q20.q, "q-axis current reference")
 SIGNAL(voltage_d, V, 16, DRIVE, d->control.command_q16.d, "d-axis voltage command")
@@ -30,7 +30,8 @@ SIGNAL(voltage_beta, V, 16, ASKED, d->modulation.command_q16.beta, "beta-axis me
 
 PLACE(17)
 SIGNAL(link_voltage, V, 16, DRIVE, d->samples.link_q16, "DC-link voltage")
-SIGNAL(load_torque, NM, 16, ROTOR, q_mul_sat(d->position.selected.load_accel_q8, d->model.torque_per_accel_q24, 24),
+SIGNAL(load_torque, NM, 16, ROTOR,
+       q_mul_sat(d->estimate.selected.load_accel_q8, d->estimate.model.torque_per_accel_q24, 24),
        "estimated load torque")
 SIGNAL(windows, NONE, 0, DRIVE, d->samples.count, "current windows sampled in the last period")
 

@@ -38,16 +38,16 @@ void hold_begin(drive_t* d) {
   hold_t* const h = &brake_release_hold;
   // The other sources have no observer that could be fast for a moment.
   h->left = drive_source_has(d, SOURCE_READS) ? (uint32_t)d->config.values.hold_time * DRIVE_PERIODS_PER_MS : 0u;
-  h->reference_bam = d->position.selected.angle_bam;
-  h->current_per_accel = qc_over(d->model.torque_per_accel_q24, d->control.per_torque_constant, 24);
-  if (h->left > 0u) deviation_observer_stands(&d->position.observer);
+  h->reference_bam = d->estimate.selected.angle_bam;
+  h->current_per_accel = qc_over(d->estimate.model.torque_per_accel_q24, d->control.per_torque_constant, 24);
+  if (h->left > 0u) deviation_observer_stands(&d->estimate.observer);
 }
 
 void hold_end(void) { brake_release_hold.left = 0; }
 
 // Electrical acceleration, binary angle per period^2, Q8, without the load's and w'.
 static int32_t restoring_accel_q8(const drive_t* d) {
-  const estimator_output_t* const now = &d->position.selected;
+  const estimator_output_t* const now = &d->estimate.selected;
   const int32_t behind = angle_diff_bam(brake_release_hold.reference_bam, now->angle_bam);
   const int32_t slow = qc_sub_sat(d->control.ramp.value, now->speed_bpp);
   return q_sat64(q_shr64(q_mac(q_product(behind, CONTROL_SQUARE_Q30), slow, 2 * CONTROL_STEP_Q30), 22));
@@ -58,7 +58,7 @@ int32_t hold_step_q20(const drive_t* d) {
   h->left--;
   h->reference_bam += (uint32_t)d->control.ramp.value;
   const drive_control_t* const c = &d->control;
-  const int64_t load_q40 = q_product(d->position.selected.load_accel_q8, h->current_per_accel);
+  const int64_t load_q40 = q_product(d->estimate.selected.load_accel_q8, h->current_per_accel);
   const int32_t above_q20 = q_sat64(c->references.current_q20.q - q_shr64(load_q40, 20));
   const int32_t return_q20 = qc_mul_sat(qc_mul_sat(above_q20, qc_abs_sat(above_q20), 20), RETURN_Q30, 30);
   const int64_t command_q40 = q_mac(load_q40, restoring_accel_q8(d), h->current_per_accel);

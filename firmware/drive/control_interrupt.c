@@ -14,10 +14,10 @@
 void (*volatile drive_onlooker)(void);
 
 static void read_samples(drive_t* d) {
-  if (d->sliced != 0u) {
-    edition_phase_control->samples(d);
-  } else {
+  if (d->modulation.sliced == 0u) {
     drive_read_samples(d, &d->samples, &d->supervision.missing);
+  } else if (!edition_phase_control->samples(d, &d->samples, &d->estimate.measured_q20, &d->supervision.missing)) {
+    drive_trip(d, FAULT_CURRENT_LIMIT);
   }
 }
 
@@ -26,15 +26,16 @@ void drive_control_step(drive_t* d) {
   read_samples(d);
   const bool windows = d->samples.count > 0u;
   hal_profile_step(windows ? CYCLES_READ_SAMPLES : CYCLES_READ_SLICES);
-  drive_estimate(d);
+  drive_estimate(d, &d->estimate);
   hal_profile_step(windows ? CYCLES_ESTIMATE : CYCLES_ESTIMATE_NO_WINDOWS);
-  drive_protect(d);
+  const drive_fault_t fault = drive_protect(d, &d->supervision, &d->estimate.observer.residual);
+  if (fault != FAULT_NONE) drive_trip(d, fault);
   drive_sequence(d);
   hal_profile_step(windows ? CYCLES_SUPERVISE : CYCLES_SUPERVISE_NO_WINDOWS);
-  drive_control_speed(d);
-  drive_control_current(d, &d->control.current, &d->control.command_q16);
+  drive_control_speed(d, &d->control, &d->estimate);
+  drive_control_current(d, &d->control);
   hal_profile_step(CYCLES_CONTROL);
-  drive_modulate(d);
+  drive_modulate(d, &d->modulation, &d->control);
   void (*const onlooker)(void) = drive_onlooker;
   if (onlooker != NULL) onlooker();
 }

@@ -7,7 +7,7 @@
 #include "firmware/mode/mode.h"
 
 void drive_bumpless_transfer(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
-  position_preset(d, angle_bam, speed_bpp);
+  position_preset(d, &d->estimate, angle_bam, speed_bpp);
   speed_controller_preset(&d->control.speed, 0);
   hold_end();
   polarity_watch_begin(angle_bam, speed_bpp);

@@ -12,6 +12,6 @@ extern inertia_match_t inertia_match;
 int32_t drive_accel_q8(const drive_t* d, int32_t id_q20, int32_t iq_q20);
 
 /// Learns; once a millisecond.
-void drive_match_inertia(drive_t* d);
+void drive_match_inertia(const drive_t* d, drive_estimate_t* e, speed_controller_t* speed);
 
 #endif

@@ -42,8 +42,8 @@ static const hal_pwm_frame_t no_pulses = {
 
 // The pattern made now acts in the next period: one and a half periods from the angle's instant to its middle.
 static uint32_t angle_at_action(const drive_t* d) {
-  const int32_t speed = d->position.selected.speed_bpp;
-  return d->position.selected.angle_bam + (uint32_t)(speed + speed / 2);
+  const int32_t speed = d->estimate.selected.speed_bpp;
+  return d->estimate.selected.angle_bam + (uint32_t)(speed + speed / 2);
 }
 
 // Written out, three times, rather than as a loop.
@@ -54,8 +54,7 @@ static inline void put_window(hal_pwm_frame_t* f, const svpwm_pattern_t* p, uint
 }
 
 // What was told too late leaves the pattern that runs for another period.
-static void write_frame(drive_t* d, hal_pwm_frame_t* f, uint16_t made) {
-  drive_modulation_t* const m = &d->modulation;
+static void write_frame(drive_modulation_t* m, hal_pwm_frame_t* f, uint16_t made, int32_t* limits) {
   const svpwm_pattern_t* const p = &m->patterns[made];
   put_window(f, p, 0u);
   put_window(f, p, 1u);
@@ -64,10 +63,10 @@ static void write_frame(drive_t* d, hal_pwm_frame_t* f, uint16_t made) {
   m->sampled = m->running;
   if (written) {
     m->running = made;
-    d->supervision.overrun = 0;
+    m->overrun = 0;
   } else {
-    d->supervision.overrun++;
-    d->limits |= LIMIT_OVERRUN;
+    m->overrun++;
+    *limits |= LIMIT_OVERRUN;
   }
 }
 
@@ -77,43 +76,43 @@ void drive_modulation_reset(drive_modulation_t* m) {
   modulator_reset(&m->state);
 }
 
-static void modulate_into(drive_t* d, uint16_t made) {
-  drive_control_t* const c = &d->control;
-  svpwm_pattern_t* const pattern = &d->modulation.patterns[made];
+static void modulate_into(const drive_t* d, drive_modulation_t* m, drive_control_t* c, uint16_t made) {
+  svpwm_pattern_t* const pattern = &m->patterns[made];
   hal_pwm_frame_t f;
   if (d->flags.shorted) {
     *pattern = short_circuit(&d->config.modulator.sampling);
     f = no_pulses;
     hal_profile_step(CYCLES_MODULATE);
-    write_frame(d, &f, made);
+    write_frame(m, &f, made, &c->limits);
     return;
   }
   const rotation_t r = frame_rotation(angle_at_action(d));
-  const ab_t current_q20 = frame_back(c->measured_q20, r);
-  const ab_t drop_q16 = dead_time_drop_q16(&d->config.dead_time, current_q20);
+  const abc_t shares_q12 = dead_time_shares_q12(&d->config.dead_time, frame_back(d->estimate.measured_q20, r));
+  const ab_t drop_q16 = dead_time_drop_of_q16(&d->config.dead_time, shares_q12);
   const ab_t reference_q16 = frame_back(c->command_q16, r);
   const ab_t command_q16 = {reference_q16.alpha + drop_q16.alpha, reference_q16.beta + drop_q16.beta};
-  d->modulation.command_q16 = command_q16;
-  const modulator_result_t result = modulator_step(&d->modulation.state, &d->config.modulator, excitation(d),
-                                                   command_q16, d->samples.link_q16, &pattern->pulses);
+  m->command_q16 = command_q16;
+  const modulator_result_t result = modulator_step(&m->state, &d->config.modulator, excitation(d), command_q16,
+                                                   d->samples.link_q16, &pattern->pulses);
   if (result.limited && c->references.closed) {
     const ab_t excess_q16 = {command_q16.alpha - result.realised_q16.alpha,
                              command_q16.beta - result.realised_q16.beta};
     current_controller_limited(&c->current, &d->config.current, frame_park(excess_q16, r));
-    d->limits |= LIMIT_VOLTAGE;
+    c->limits |= LIMIT_VOLTAGE;
   }
-  const svpwm_carried_t carried = {current_q20, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, d->samples.link_q16};
+  const svpwm_carried_t carried = {shares_q12, d->estimate.model.yd_q30 / 2 + d->estimate.model.yq_q30 / 2,
+                                   d->samples.link_q16};
   svpwm_compensate_edges(&d->config.dead_time, &d->config.modulator.sampling, &carried, pattern, f.edge_tick);
   hal_profile_step(CYCLES_MODULATE);
-  write_frame(d, &f, made);
+  write_frame(m, &f, made, &c->limits);
 }
 
 // Into the pattern that does not run: a call for each of the two, as what is proved of one place is not of either.
-void drive_modulate(drive_t* d) {
-  if (edition_phase_control != NULL && edition_phase_control->step(d)) return;
-  if (d->modulation.running == 0u) {
-    modulate_into(d, 1u);
+void drive_modulate(const drive_t* d, drive_modulation_t* m, drive_control_t* c) {
+  if (edition_phase_control != NULL && edition_phase_control->step(d, m)) return;
+  if (m->running == 0u) {
+    modulate_into(d, m, c, 1u);
   } else {
-    modulate_into(d, 0u);
+    modulate_into(d, m, c, 0u);
   }
 }

@@ -42,7 +42,7 @@ void polarity_watch_begin(uint32_t angle_bam, int32_t speed_bpp) {
 }
 
 static const regression_t* regression_in_use(const drive_t* d) {
-  return drive_source_has(d, SOURCE_READS) ? &d->position.observer.regression : &d->position.avv.regression;
+  return drive_source_has(d, SOURCE_READS) ? &d->estimate.observer.regression : &d->estimate.avv.regression;
 }
 
 // Several periods at once, at the mean of the speeds before and after.
@@ -56,7 +56,7 @@ static void move_axis(tracking_observer_t* s, int32_t periods) {
 // Moves the axis on to now. How far the axis that the windows have shown is ahead of it: AVV's of this period, the
 // observer's when it regressed them last. It is known up to half a turn.
 static int32_t axis_off(const drive_t* d) {
-  const drive_position_t* const p = &d->position;
+  const drive_estimate_t* const p = &d->estimate;
   polarity_watch_t* const w = &polarity_watch;
   move_axis(&w->axis, w->then_periods);
   uint32_t own = w->axis.angle_bam;
@@ -71,7 +71,7 @@ static int32_t axis_off(const drive_t* d) {
 
 // While the current is large or the windows do not show the axis.
 static bool samples_are_invalid(const drive_t* d) {
-  return q_abs_sat(d->control.measured_q20.q) > d->config.values.current_limit / 2 ||
+  return q_abs_sat(d->estimate.measured_q20.q) > d->config.values.current_limit / 2 ||
          (d->samples.count > 0u && regression_in_use(d)->information == 0);
 }
 
@@ -89,16 +89,16 @@ static void begin_sums(polarity_watch_t* w, int32_t iq_q20) {
 }
 
 // The axis is the one in use for now.
-static void begin_anew(drive_t* d) {
+static void begin_anew(const drive_t* d) {
   polarity_watch_t* const w = &polarity_watch;
-  tracking_observer_preset(&w->axis, d->position.selected.angle_bam, d->position.selected.speed_bpp, 0);
+  tracking_observer_preset(&w->axis, d->estimate.selected.angle_bam, d->estimate.selected.speed_bpp, 0);
   w->sign.agreed = 0;
   w->sign.periods = 0;
-  begin_sums(w, d->control.measured_q20.q);
+  begin_sums(w, d->estimate.measured_q20.q);
 }
 
 // Takes the error that was seen once for every period since the last time.
-static void follow_axis(drive_t* d) {
+static void follow_axis(const drive_t* d) {
   polarity_watch_t* const w = &polarity_watch;
   w->samples_invalid = samples_are_invalid(d);
   if (w->samples_invalid) {
@@ -114,20 +114,20 @@ static void follow_axis(drive_t* d) {
 
 static int32_t mean_volts_q16(int32_t sum_q12, int32_t periods) { return sum_q12 / periods * 16; }
 
-static void look(drive_t* d) {
+static void look(const drive_t* d) {
   polarity_watch_t* const w = &polarity_watch;
   const uint32_t axis_bam = w->axis.angle_bam + (uint32_t)w->axis.speed_bpp * w->axis_periods;
-  const rotation_t r = frame_rotation(d->position.selected.angle_bam - axis_bam);
+  const rotation_t r = frame_rotation(d->estimate.selected.angle_bam - axis_bam);
   const dq_t mean_q16 = {mean_volts_q16(w->voltage_q12.d, w->periods), mean_volts_q16(w->voltage_q12.q, w->periods)};
-  const emf_sign_seen_t seen = {on_axis(mean_q16, r).q, on_axis(d->control.measured_q20, r), w->axis.speed_bpp,
+  const emf_sign_seen_t seen = {on_axis(mean_q16, r).q, on_axis(d->estimate.measured_q20, r), w->axis.speed_bpp,
                                 w->periods};
-  emf_sign_look(&w->sign, &d->model, &seen);
+  emf_sign_look(&w->sign, &d->estimate.model, &seen);
   forget_voltage(w);
 }
 
-static bool says_reversed(drive_t* d) {
+static bool says_reversed(const drive_t* d) {
   polarity_watch_t* const w = &polarity_watch;
-  const emf_sign_result_t sign = emf_sign_judge(&w->sign, &d->model, w->axis.speed_bpp);
+  const emf_sign_result_t sign = emf_sign_judge(&w->sign, &d->estimate.model, w->axis.speed_bpp);
   if (sign != EMF_SIGN_OPEN) w->open = false;
   return sign == EMF_SIGN_REVERSED;
 }
@@ -136,14 +136,14 @@ void polarity_watch_end(void) { polarity_watch.open = false; }
 
 // Commands are within 4096 V (CURRENT_COMMAND_END_Q16).
 static void gather(const drive_t* d, polarity_watch_t* w) {
-  if (w->periods >= SUM_PERIODS) begin_sums(w, d->control.measured_q20.q);
+  if (w->periods >= SUM_PERIODS) begin_sums(w, d->estimate.measured_q20.q);
   w->voltage_q12.d += q_shr(d->control.command_q16.d, 4);
   w->voltage_q12.q += q_shr(d->control.command_q16.q, 4);
   w->periods++;
   w->axis_periods++;
 }
 
-bool polarity_watch_step(drive_t* d) {
+bool polarity_watch_step(const drive_t* d) {
   polarity_watch_t* const w = &polarity_watch;
   if (!polarity_watch_is_awake(d)) return false;
   gather(d, w);
@@ -161,7 +161,7 @@ bool polarity_watch_step(drive_t* d) {
     w->then_periods = w->axis_periods;
     if (full) return false;
   }
-  const bool renewed = d->position.observer.gathered.periods == 0 && drive_source_has(d, SOURCE_OBSERVES);
+  const bool renewed = d->estimate.observer.gathered.periods == 0 && drive_source_has(d, SOURCE_OBSERVES);
   if (w->samples_invalid || (renewed && w->periods < WAITED_MAX)) return false;
   look(d);
   return full && says_reversed(d);

@@ -23,7 +23,7 @@ extern polarity_watch_t polarity_watch;
 /// From the start's end on; the step is true when the back-EMF says that the magnet is the other way round.
 void polarity_watch_begin(uint32_t angle_bam, int32_t speed_bpp);
 void polarity_watch_end(void);
-bool polarity_watch_step(drive_t* d);
+bool polarity_watch_step(const drive_t* d);
 bool polarity_watch_suspects(void);
 static inline bool polarity_watch_is_awake(const drive_t* d) { return polarity_watch.open && d->state == DRIVE_RUN; }
 

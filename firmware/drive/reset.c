@@ -19,8 +19,8 @@
 #include "firmware/mode/mode.h"
 
 void drive_machine_reset(void) {
-  drive.model = drive.config.nameplate;
-  drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.model);
+  drive.estimate.model = drive.config.nameplate;
+  drive.control.speed_ready = speed_controller_init(&drive.control.speed, &drive.config.speed, &drive.estimate.model);
 }
 
 void drive_reset(void) {
@@ -33,14 +33,14 @@ void drive_reset(void) {
   parameters_reset();
   for (uint16_t k = 0; edition_resets[k] != NULL; k++) edition_resets[k]();
   drive.zero_current_a_q8 = drive.zero_current_b_q8 = DRIVE_MIDDLE_Q8;
-  drive.trim.offset_a_q8 = drive.zero_current_a_q8;
-  drive.trim.offset_b_q8 = drive.zero_current_b_q8;
+  drive.estimate.trim.offset_a_q8 = drive.zero_current_a_q8;
+  drive.estimate.trim.offset_b_q8 = drive.zero_current_b_q8;
   drive.source = drive_source_selected();
   drive.config_valid = drive_config_load(&drive.config);
   drive.control.current_limit_q20 = interlock_current_limit();
   drive_machine_reset();
-  drive.control.per_torque_constant = q_invert(machine_torque_constant_q24(&drive.model, 0));
+  drive.control.per_torque_constant = q_invert(machine_torque_constant_q24(&drive.estimate.model, 0));
   sampling_scale_sensors(&drive, &drive.samples);
   drive_modulation_reset(&drive.modulation);
-  position_preset(&drive, 0, 0);
+  position_preset(&drive, &drive.estimate, 0, 0);
 }

@@ -25,7 +25,7 @@ void sampling_reset(void) {
 }
 
 void drive_window_interrupt(void) {
-  if (drive.sliced != 0u) {
+  if (drive.modulation.sliced != 0u) {
     edition_phase_control->slice();
     return;
   }

@@ -20,7 +20,7 @@ void sampling_reset(void);
 
 /// From offsets and mismatch of the sensors as they are now to what their codes mean.
 static inline void sampling_scale_sensors(const drive_t* d, drive_samples_t* s) {
-  s->scale = slopes_scale(&d->config.slopes, &d->trim);
+  s->scale = slopes_scale(&d->config.slopes, &d->estimate.trim);
 }
 
 /// Background level: code of the auxiliary input in the last period's first window.

@@ -17,14 +17,14 @@ static bool has_observer(const drive_t* d) {
 
 // Observer and flux both at work: the observer leaves the windows out beside speed control and field weakening.
 static bool is_beside_flux(const drive_t* d) {
-  return drive_source_has(d, SOURCE_HANDS_OVER) && !blend_is_low(&d->position.blend);
+  return drive_source_has(d, SOURCE_HANDS_OVER) && !blend_is_low(&d->estimate.blend);
 }
 
 // What cannot wait: operating point or covariance, by turns where both want it, the covariance first where it would be
 // renewed anyway. A shaft that is held wants its operating point always.
 static bool take_urgent(const drive_t* d, schedule_t* s, bool observes) {
-  const bool due = s->update_urgent || (observes && !s->held && deviation_observer_is_due(&d->position.observer));
-  const bool moved = s->held || q_abs_sat(d->control.measured_q20.q - d->model.iq_q20) > MOVED_Q20;
+  const bool due = s->update_urgent || (observes && !s->held && deviation_observer_is_due(&d->estimate.observer));
+  const bool moved = s->held || q_abs_sat(d->estimate.measured_q20.q - d->estimate.model.iq_q20) > MOVED_Q20;
   if (!moved && !due) return false;
   s->moves = moved && !(due && (s->moved_last || s->update_urgent));
   s->renews = !s->moves;
@@ -36,7 +36,7 @@ static bool take_urgent(const drive_t* d, schedule_t* s, bool observes) {
 static bool is_young(const drive_t* d) { return d->periods < DRIVE_PERIODS_PER_MS; }
 
 // The first look of an observer is a long one.
-static bool is_new(const drive_t* d) { return !d->position.observer.is_sensitive; }
+static bool is_new(const drive_t* d) { return !d->estimate.observer.is_sensitive; }
 
 static void take_slot(schedule_t* s) {
   s->waited = 0;
@@ -91,8 +91,8 @@ void schedule_next(const drive_t* d, schedule_t* s) {
   s->turning = drive_is_turning(d) || d->flags.open_loop;
   const bool observes = s->turning && has_observer(d);
   s->held = hold_is_on(d);
-  s->unsure = observes && !deviation_observer_is_sure(&d->position.observer);
-  s->update_urgent = observes && (is_young(d) || deviation_observer_update_is_urgent(&d->position.observer));
+  s->unsure = observes && !deviation_observer_is_sure(&d->estimate.observer);
+  s->update_urgent = observes && (is_young(d) || deviation_observer_update_is_urgent(&d->estimate.observer));
   if (is_slot(s)) {
     s->exclusive = d->flags.wants_exclusive;
     if (!s->exclusive) slot_or_give_way(d, s, observes);

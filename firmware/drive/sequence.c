@@ -34,8 +34,8 @@ static void calibrate(drive_t* d) {
   if (d->samples.count == 0u) return;
   d->zero_current_a_q8 = q_follow_near(d->zero_current_a_q8, d->samples.raw_a_q8, 4);
   d->zero_current_b_q8 = q_follow_near(d->zero_current_b_q8, d->samples.raw_b_q8, 4);
-  d->trim.offset_a_q8 = usable_offset(d->zero_current_a_q8);
-  d->trim.offset_b_q8 = usable_offset(d->zero_current_b_q8);
+  d->estimate.trim.offset_a_q8 = usable_offset(d->zero_current_a_q8);
+  d->estimate.trim.offset_b_q8 = usable_offset(d->zero_current_b_q8);
   const bool flows = current_flows(d);
   if (flows) d->settled_at = d->periods + CALIBRATE_PERIODS;
   const bool settled = d->periods >= d->settled_at;
@@ -67,7 +67,7 @@ static void stop(drive_t* d) {
   const int32_t still = qc_mul(2L * 65536L, d->config.bpp_per_rpm_q8, 24);
   if (d->control.ramp.value != 0) return;
   v->stopping_periods++;
-  if (qc_abs_sat(d->position.selected.speed_bpp) <= still) {
+  if (qc_abs_sat(d->estimate.selected.speed_bpp) <= still) {
     coast(d);
   } else if (v->stopping_periods > (uint32_t)d->config.values.stop_time * DRIVE_PERIODS_PER_MS) {
     drive_trip(d, FAULT_STOP);
@@ -140,6 +140,7 @@ static void take_speed(drive_t* d) {
 void drive_sequence(drive_t* d) {
   d->periods++;
   d->heartbeat++;
+  if (d->schedule.task == TASK_SPEED) d->time_ms++;
   hal_safety_toggle_enable();
   take_speed(d);
   switch (d->state) {

@@ -3,7 +3,7 @@
 
 #include "firmware/dictionary/units.h"
 #include "firmware/drive/steps.h"
-#include "hal/qmath/qmath.h"
+#include "hal/qmath/qcall.h"
 
 #define PLACE(number)
 
@@ -14,7 +14,7 @@
 #define ASKED FRAME  // and known to be 0 else, see the table
 
 // Volatile: to the background level the interrupt changes the drive at any time.
-#define SIGNAL_RPM(speed_bpp) q_mul_sat(speed_bpp, d->config.rpm_per_bpp_q40, 24)
+#define SIGNAL_RPM(speed_bpp) qc_mul_sat(speed_bpp, d->config.rpm_per_bpp_q40, 24)
 
 // What is known is asked once for all of a pass: it has to fit between two interrupts.
 #define SIGNAL(name, unit, q, of, value, meaning)                     \

@@ -31,18 +31,21 @@ uint16_t drive_dead_band_ticks(void);
 void drive_control_interrupt(void);
 void drive_window_interrupt(void);
 
-// The steps of the control interrupt, in their order. What one of them may write is the check `writers`' to hold; where
-// it is a group of the drive and nothing else, the step is given that, and the drive to be read.
+// The steps of the control interrupt, in their order: the drive to be read, and the groups of it that the step writes.
+// Which members of a group those are is the check `writers`' to hold.
 /// What the period that begins does (interfaces/schedule.h), from that of the period before.
 void schedule_next(const drive_t* d, schedule_t* s);  // schedule.c
 /// *missing: periods in a row without all of their samples.
-void drive_read_samples(const drive_t* d, drive_samples_t* s, uint16_t* missing);                   // sampling.c
-void drive_estimate(drive_t* d);                                                                    // position.c
-void drive_protect(drive_t* d);                                                                     // protection.c
-void drive_sequence(drive_t* d);                                                                    // drive/sequence.c
-void drive_control_speed(drive_t* d);                                                               // drive/speed.c
-void drive_control_current(const drive_t* d, current_controller_t* controller, dq_t* command_q16);  // drive/current.c
-void drive_modulate(drive_t* d);                                                                    // modulation.c
+void drive_read_samples(const drive_t* d, drive_samples_t* s, uint16_t* missing);  // sampling.c
+void drive_estimate(const drive_t* d, drive_estimate_t* e);                        // position.c
+/// What opens the power stage, or FAULT_NONE; takes what the observer has left unexplained.
+drive_fault_t drive_protect(const drive_t* d, drive_supervision_t* v, deviation_residual_t* left);  // protection.c
+/// The states and the requests, which may do anything.
+void drive_sequence(drive_t* d);  // drive/sequence.c
+/// Speed control and field weakening, and what is learnt of load and inertia.
+void drive_control_speed(const drive_t* d, drive_control_t* c, drive_estimate_t* e);  // drive/speed.c
+void drive_control_current(const drive_t* d, drive_control_t* c);                     // drive/current.c
+void drive_modulate(const drive_t* d, drive_modulation_t* m, drive_control_t* c);     // modulation.c
 void drive_modulation_reset(drive_modulation_t* m);
 
 /// Lets the position sources and the speed control start from this angle and speed (drive/hand_over.c).
@@ -53,6 +56,6 @@ int32_t drive_current_headroom(const drive_t* d);
 
 /// Field weakening of this instant, into the d-axis reference; while the shaft turns it takes four periods of the
 /// millisecond.
-void drive_weaken_field(drive_t* d);  // drive/speed.c
+void drive_weaken_field(const drive_t* d, drive_control_t* c);  // drive/speed.c
 
 #endif

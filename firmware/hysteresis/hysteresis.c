@@ -94,7 +94,7 @@ static void hysteresis_slice(void) {
 
 static int32_t mean_code_q8(int32_t sum_q8, uint16_t slices) { return q_limit(sum_q8 / (int32_t)slices, CODE_END_Q8); }
 
-static void hysteresis_samples(drive_t* d) {
+static bool hysteresis_samples(const drive_t* d, drive_samples_t* s, dq_t* measured_q20, uint16_t* missing) {
   hysteresis_t* const h = &hysteresis;
   const uint16_t state = hal_irq_disable();
   const hysteresis_sums_t taken = h->sums;
@@ -103,19 +103,19 @@ static void hysteresis_samples(drive_t* d) {
   h->sums.peak_q8 = 0;
   h->sums.slices = 0;
   hal_irq_restore(state);
-  d->samples.count = 0;
-  d->supervision.missing = (taken.slices > 0u) ? 0u : (uint16_t)(d->supervision.missing + 1u);
-  if (taken.slices == 0u) return;
+  s->count = 0;
+  *missing = (taken.slices > 0u) ? 0u : (uint16_t)(*missing + 1u);
+  if (taken.slices == 0u) return true;
   const int32_t per_code_q30 = d->config.slopes.amps_per_code_q30;
   const int32_t a_q20 = q_mul(mean_code_q8(taken.a_q8, taken.slices), per_code_q30, 18);
   const int32_t b_q20 = q_mul(mean_code_q8(taken.b_q8, taken.slices), per_code_q30, 18);
   // The mean of the period before, whose middle lies half a period behind the angle of its start.
-  const uint32_t middle_bam = d->position.selected.angle_bam + (uint32_t)(d->position.selected.speed_bpp / 2);
+  const uint32_t middle_bam = d->estimate.selected.angle_bam + (uint32_t)(d->estimate.selected.speed_bpp / 2);
   const dq_t mean_q20 = frame_turned(frame_clarke2(a_q20, b_q20), middle_bam);
-  d->control.measured_q20.d = q_limit(mean_q20.d, DRIVE_CURRENT_END_Q20);
-  d->control.measured_q20.q = q_limit(mean_q20.q, DRIVE_CURRENT_END_Q20);
-  d->samples.link_q16 = q_follow_near(d->samples.link_q16, (int32_t)taken.link_code * d->config.volts_per_code_q16, 3);
-  if (q_mul(taken.peak_q8, per_code_q30, 18) > d->config.values.trip_current) drive_trip(d, FAULT_CURRENT_LIMIT);
+  measured_q20->d = q_limit(mean_q20.d, DRIVE_CURRENT_END_Q20);
+  measured_q20->q = q_limit(mean_q20.q, DRIVE_CURRENT_END_Q20);
+  s->link_q16 = q_follow_near(s->link_q16, (int32_t)taken.link_code * d->config.volts_per_code_q16, 3);
+  return q_mul(taken.peak_q8, per_code_q30, 18) <= d->config.values.trip_current;
 }
 
 // The band follows the switching frequency: seldom enough to average over the modulation by the angle.
@@ -140,12 +140,12 @@ static abc_t reference_codes_q8(const drive_t* d, uint32_t angle_bam) {
 }
 
 // From now on the references go where they will be in a period.
-static void refer(drive_t* d) {
+static void refer(const drive_t* d) {
   hysteresis_t* const h = &hysteresis;
   const int32_t slices = (int32_t)(HAL_PWM_PERIOD_TICKS / config.slice_ticks);
-  const int32_t speed = d->position.selected.speed_bpp;
+  const int32_t speed = d->estimate.selected.speed_bpp;
   const int32_t passed_q30 = q_min((int32_t)hal_pwm_period_tick(), HAL_PWM_PERIOD_TICKS) * 107374L;
-  const uint32_t angle = d->position.selected.angle_bam + (uint32_t)q_mul(speed, passed_q30, 30);
+  const uint32_t angle = d->estimate.selected.angle_bam + (uint32_t)q_mul(speed, passed_q30, 30);
   const abc_t now = reference_codes_q8(d, angle);
   const abc_t then = reference_codes_q8(d, angle + (uint32_t)speed);
   const int32_t band_q8 = to_codes_q8(d, h->band_q20);
@@ -158,25 +158,25 @@ static void refer(drive_t* d) {
   hal_irq_restore(state);
 }
 
-static void begin(drive_t* d) {
+static void begin(const drive_t* d, drive_modulation_t* m) {
   hysteresis_t* const h = &hysteresis;
   clear(h, sizeof *h);
-  h->offset_a_q8 = d->trim.offset_a_q8;
-  h->offset_b_q8 = d->trim.offset_b_q8;
+  h->offset_a_q8 = d->estimate.trim.offset_a_q8;
+  h->offset_b_q8 = d->estimate.trim.offset_b_q8;
   h->band_q20 = config.band_q20;
   refer(d);
-  d->sliced = (uint16_t)hal_sampling_timer_begin(config.slice_ticks);
+  m->sliced = (uint16_t)hal_sampling_timer_begin(config.slice_ticks);
 }
 
-static bool hysteresis_step(drive_t* d) {
+static bool hysteresis_step(const drive_t* d, drive_modulation_t* m) {
   const bool wanted = config.chosen && (d->state == DRIVE_RUN || d->state == DRIVE_STOP);
-  if (wanted && d->sliced == 0u) begin(d);
-  if (!wanted && d->sliced != 0u) {
+  if (wanted && m->sliced == 0u) begin(d, m);
+  if (!wanted && m->sliced != 0u) {
     hal_sampling_timer_end();
-    d->sliced = 0;
+    m->sliced = 0;
     sampling_reset();
   }
-  if (d->sliced == 0u) return false;
+  if (m->sliced == 0u) return false;
   adapt(&hysteresis);
   refer(d);
   hal_profile_step(CYCLES_REFER);

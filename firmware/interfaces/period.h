@@ -37,18 +37,21 @@ typedef struct {
   int32_t link_q16;                         // filtered DC-link voltage, V
 } drive_samples_t;
 
-/// Angle and speed in use and the estimators behind them.
-typedef struct {
+/// Angle and speed in use, the estimators behind them, and what is known of machine and sensors.
+typedef struct estimate {
   estimator_output_t selected, low, high;
   estimator_output_t seen;  // by the position source, while it looks on and another angle is in use
-  dq_t seen_q20;            // mean current in the frame that the windows were turned into, A
+  dq_t measured_q20;        // mean current of the last period, A
+  dq_t seen_q20;            // the same in the frame that the windows were turned into
   avv_t avv;
   deviation_observer_t observer;
   blend_t blend;
   bool is_near;                                 // what was last regressed is near enough to learn from
   int32_t torque_accel_q8;                      // acceleration of the torque of the measured current
   estimator_frame_t frames[ESTIMATOR_WINDOWS];  // the windows in the frame of who looks at them first, or in use
-} drive_position_t;
+  machine_model_t model;                        // nameplate, at the operating point and with what was learnt
+  slopes_trim_t trim;                           // current offsets, mismatch of the sensors
+} drive_estimate_t;
 
 typedef struct {
   current_controller_t current;
@@ -61,18 +64,21 @@ typedef struct {
   ramp_t ramp;
   position_hold_t position_hold;  // kept at a reference of zero
   references_t references;
-  dq_t measured_q20;        // mean current of the last period
+  int32_t spin_d_q20;       // i_d that a commissioning's spin asks for, A
   dq_t command_q16;         // voltage command
+  int32_t limits;           // what stands in the way, one bit each (interfaces/references.h)
   int32_t command_rpm_q16;  // speed command, mechanical
   int32_t target_bpp;       // the same, electrical
   bool speed_ready;         // the speed controller could be set up
 } drive_control_t;
 
 typedef struct {
+  volatile uint16_t sliced;  // 1: a phase control has the legs (interfaces/phase_control.h)
+  uint16_t sampled;          // place of the pattern of the period whose windows were just read
+  uint16_t running;          // of that which has just begun
+  uint16_t overrun;          // periods repeated because the interrupt was late
   modulator_t state;
   svpwm_pattern_t patterns[2];  // where one is made, nobody needs what it held any more
-  uint16_t sampled;             // of the period whose windows were just read
-  uint16_t running;             // of the period that has just begun
   ab_t command_q16;             // voltage commanded of the modulator, drops of the devices added
 } drive_modulation_t;
 
@@ -81,7 +87,7 @@ static inline const svpwm_pattern_t* modulation_sampled(const drive_modulation_t
 }
 
 typedef struct {
-  uint16_t missing, overrun, diverged_periods;
+  uint16_t missing, diverged_periods;
   uint16_t judged_at;         // heartbeat when the angle in use was last judged
   uint32_t judged_bam;        // and that angle
   uint32_t stopping_periods;  // in STOP with the reference at zero

@@ -7,6 +7,7 @@
 #include "svpwm/modulator.h"
 
 struct drive;
+struct estimate;
 
 /// What others have to know of a source.
 enum {
@@ -26,9 +27,9 @@ enum {
 #define EXCITATION_BY_SOURCE 3
 
 typedef struct {
-  /// Of a period: angle and speed. What it has for itself of the drive's position (interfaces/period.h), and what it
-  /// learns of machine and sensors, it writes; the rest of the drive is there to be read.
-  estimator_output_t (*step)(struct drive* d, estimator_input_t* in);
+  /// Of a period: angle and speed. What it has for itself of the drive's estimate (interfaces/period.h), and what it
+  /// learns of machine and sensors, it writes; the drive is there to be read.
+  estimator_output_t (*step)(const struct drive* d, struct estimate* e, estimator_input_t* in);
   /// The pulses it wants where the parameter `excitation` leaves that to it; NULL: alternating.
   excitation_t (*excitation)(const struct drive* d);
   /// Highest i_d with which it sees; NULL: any.

@@ -7,6 +7,7 @@
 #include "estimators/estimator.h"
 
 struct drive;
+struct estimate;
 
 typedef enum {
   DRIVE_BOOT = 0,
@@ -26,7 +27,7 @@ typedef struct {
   void (*step)(struct drive* d);
   /// Angle and speed in use, in the place of the position source: in the open-loop ramp, and at the standstill of
   /// COMMISSION.
-  estimator_output_t (*estimate)(struct drive* d, estimator_input_t* in);
+  estimator_output_t (*estimate)(const struct drive* d, struct estimate* e, estimator_input_t* in);
   /// COMMISSION: it is not wanted any more, whatever state the drive is in.
   void (*abandon)(void);
 } state_t;

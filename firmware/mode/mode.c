@@ -56,10 +56,10 @@ static void note(const drive_t* d, drive_fault_t fault) {
   r.fault = fault;
   r.state = d->state;
   r.known = drive_known(d);
-  r.speed_q16 = ((r.known & KNOWN_ROTOR) != 0u) ? drive_rpm_q16(d, d->position.selected.speed_bpp) : 0;
+  r.speed_q16 = ((r.known & KNOWN_ROTOR) != 0u) ? drive_rpm_q16(d, d->estimate.selected.speed_bpp) : 0;
   r.link_q16 = d->samples.link_q16;
   const dq_t none = {0, 0};
-  const dq_t seen_q20 = ((r.known & KNOWN_FRAME) != 0u) ? d->control.measured_q20 : none;
+  const dq_t seen_q20 = ((r.known & KNOWN_FRAME) != 0u) ? d->estimate.measured_q20 : none;
   r.current_d_q20 = seen_q20.d;
   r.current_q_q20 = seen_q20.q;
   fault_history_add(&r);

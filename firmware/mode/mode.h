@@ -26,25 +26,21 @@ typedef struct {
 typedef struct drive {
   drive_state_t state;
   drive_fault_t fault;
-  int32_t limits;
   uint32_t periods;  // since the state was entered
   state_flags_t flags;
   schedule_t schedule;
-  uint32_t time_ms;          // control interrupts since power-on, in ms; wraps after 49 days
-  uint16_t heartbeat;        // counts control interrupts, for the watchdog
-  volatile uint16_t sliced;  // 1: a phase control has the legs (interfaces/phase_control.h)
+  uint32_t time_ms;    // control interrupts since power-on, in ms; wraps after 49 days
+  uint16_t heartbeat;  // counts control interrupts, for the watchdog
   bool config_valid;
   bool conflict_known;  // of the parameters that the configuration was made of
   drive_request_t request;
   const position_source_t* source;  // by the parameter, selected when that changes
   packed_text_t conflict;           // why they do not fit together, or PACKED_NONE
-  drive_position_t position;
+  drive_estimate_t estimate;
   drive_control_t control;
   drive_samples_t samples;
-  machine_model_t model;  // nameplate, at the operating point and with what was learnt
   drive_modulation_t modulation;
   drive_supervision_t supervision;
-  slopes_trim_t trim;   // current offsets, mismatch of the sensors
   wiring_t wiring;      // mistake that the last start has seen, beside the fault that it brought about
   uint32_t settled_at;  // period in which the currents will have been at rest for long enough
   int32_t zero_current_a_q8, zero_current_b_q8;  // currents at rest while the offsets are found, codes

@@ -12,7 +12,7 @@ typedef struct {
   /// One period; says which one follows.
   start_phase_t (*step)(drive_t* d);
   /// Angle and speed meanwhile, where the phase turns the rotor by a vector (interfaces/state.h); NULL elsewhere.
-  estimator_output_t (*estimate)(drive_t* d, estimator_input_t* in);
+  estimator_output_t (*estimate)(const drive_t* d, drive_estimate_t* e, estimator_input_t* in);
 } phase_t;
 
 /// By start_phase_t; NULL where the edition leaves it out (editions/).

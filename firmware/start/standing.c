@@ -34,7 +34,7 @@ static drive_fault_t fault_of(wiring_t wiring) {
 static start_phase_t step_axis(drive_t* d) {
   int32_t axis_bam = 0;
   const bool seen = start_sees_axis(d, starting.tick >= AXIS_SKIP, &axis_bam);
-  position_preset_axis(d, (uint32_t)axis_bam, 0);  // the regressions must be made at one and the same angle
+  position_preset_axis(&d->estimate, (uint32_t)axis_bam, 0);  // the regressions must be made at one and the same angle
   if (!seen) return START_GOES_ON;
   const drive_fault_t fault = fault_of(d->wiring);
   if (fault != FAULT_NONE) {
@@ -46,20 +46,20 @@ static start_phase_t step_axis(drive_t* d) {
     return START_GOES_ON;
   }
   if (!start_is_open_loop(d)) return START_SETTLE;
-  d->model = d->config.nameplate;
+  d->estimate.model = d->config.nameplate;
   return START_IF_RAMP;
 }
 
 // AVV's speed where it is more than noise.
 static int32_t present_speed(const drive_t* d) {
-  const int32_t speed = d->position.avv.observer.speed_bpp;
+  const int32_t speed = d->estimate.avv.observer.speed_bpp;
   const int32_t least = qc_mul_sat(TURNING_RPM_Q16, d->config.bpp_per_rpm_q8, 24);
   return (qc_abs_sat(speed) > least) ? speed : 0;
 }
 
 // The angle is AVV's, or half a turn away.
 static start_phase_t decided(drive_t* d, polarity_result_t result, int32_t sigma_q8) {
-  const uint32_t angle = d->position.avv.observer.angle_bam;
+  const uint32_t angle = d->estimate.avv.observer.angle_bam;
   const int32_t speed = present_speed(d);
   starting.sigma_q8 = sigma_q8;
   start_run(d, (result == POLARITY_WRONG) ? angle + ANGLE_BAM_HALF_TURN : angle, speed);
@@ -103,7 +103,7 @@ static int32_t motion_current(const drive_start_t* s) {
 static void begin_motion(drive_t* d) {
   drive_start_t* const s = &starting;
   if (s->phase != START_MOTION) s->tries = 0;
-  const tracking_observer_t* const seen = &d->position.avv.observer;
+  const tracking_observer_t* const seen = &d->estimate.avv.observer;
   if (s->starved && s->tries > 0u) {
     polarity_again(&s->motion, seen->angle_bam, seen->speed_bpp);
   } else {
@@ -125,11 +125,11 @@ static void begin_saturation(drive_t* d) {
     begin_test(START_SATURATION);
     return;
   }
-  if (!saturation_is_visible(&d->model, &d->config.saturation, current)) {
+  if (!saturation_is_visible(&d->estimate.model, &d->config.saturation, current)) {
     begin_motion(d);
     return;
   }
-  saturation_begin(&s->saturation, &d->model, &d->config.saturation, current);
+  saturation_begin(&s->saturation, &d->estimate.model, &d->config.saturation, current);
   begin_test(START_SATURATION);
 }
 
@@ -146,18 +146,19 @@ static start_phase_t step_settle(drive_t* d) {
 
 // A winding that is much colder or warmer than when it was measured: what follows may stand under load at once.
 static void take_resistance(drive_t* d) {
-  const int32_t more_q24 = saturation_resistance_q24(&starting.saturation, &d->model);
-  if (qc_abs_sat(more_q24) > d->model.nominal_rs_q24 / RESISTANCE_SHARE) voltage_match_resistance(&d->model, more_q24);
+  const int32_t more_q24 = saturation_resistance_q24(&starting.saturation, &d->estimate.model);
+  if (qc_abs_sat(more_q24) > d->estimate.model.nominal_rs_q24 / RESISTANCE_SHARE)
+    voltage_match_resistance(&d->estimate.model, more_q24);
 }
 
 static start_phase_t step_saturation(drive_t* d) {
   drive_start_t* const s = &starting;
   saturation_t* const test = &s->saturation;
-  const int32_t reference_q20 = saturation_step(test, &d->position.avv.regression, &d->model);
+  const int32_t reference_q20 = saturation_step(test, &d->estimate.avv.regression, &d->estimate.model);
   d->control.references.current_q20.d = reference_q20;
   const int16_t tick = (int16_t)((test->tick - 1) % SATURATION_SEGMENT);
   if (s->tick <= SATURATION_LENGTH)
-    followed_step(&s->followed, tick, SATURATION_SEGMENT, reference_q20, d->control.measured_q20.d);
+    followed_step(&s->followed, tick, SATURATION_SEGMENT, reference_q20, d->estimate.measured_q20.d);
   if (test->result == POLARITY_PENDING || s->tick < SATURATION_LENGTH + CALM_PERIODS || !start_has_exclusive_slot(d))
     return START_GOES_ON;
   s->tries++;
@@ -172,12 +173,12 @@ static start_phase_t step_saturation(drive_t* d) {
 
 static start_phase_t step_motion(drive_t* d) {
   drive_start_t* const s = &starting;
-  const uint32_t raw = d->position.avv.observer.angle_bam + (uint32_t)d->position.avv.error_bam;
+  const uint32_t raw = d->estimate.avv.observer.angle_bam + (uint32_t)d->estimate.avv.error_bam;
   const bool pending = s->motion.result == POLARITY_PENDING;
   const int16_t tick = s->motion.tick;
   const int32_t reference_q20 = polarity_step(&s->motion, raw);
   d->control.references.current_q20.q = reference_q20;
-  if (pending) followed_step(&s->followed, tick, s->motion.length, reference_q20, d->control.measured_q20.q);
+  if (pending) followed_step(&s->followed, tick, s->motion.length, reference_q20, d->estimate.measured_q20.q);
   if (s->motion.result == POLARITY_PENDING || !start_has_exclusive_slot(d)) return START_GOES_ON;
   s->tries++;
   if (!followed_well(&s->followed, s->motion.current_q20)) return starve(d);

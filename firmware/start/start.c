@@ -16,6 +16,7 @@ static void reset_control(drive_t* d) {
   static const references_t none = {{0, 0}, 0, false};
   d->control.references = none;
   modulator_reset(&d->modulation.state);
+  d->modulation.overrun = 0;
   field_weakening_reset(&d->control.weakening);
   d->control.ramp.value = 0;
   position_hold_release(&d->control.position_hold);
@@ -30,11 +31,11 @@ static bool prepare(drive_t* d, drive_state_t behind) {
   clear(&d->supervision, sizeof d->supervision);
   clear(&starting, sizeof starting);
   d->wiring = WIRING_GOOD;
-  d->model = d->config.nameplate;
+  d->estimate.model = d->config.nameplate;
   inertia_match_reset(&inertia_match);
   speed_controller_scale(&d->control.speed, INERTIA_SAME_Q24);
-  d->trim.mismatch_q30 = d->config.sensor_mismatch_q30;
-  position_preset(d, 0, 0);
+  d->estimate.trim.mismatch_q30 = d->config.sensor_mismatch_q30;
+  position_preset(d, &d->estimate, 0, 0);
   reset_control(d);
   drive_enter(d, DRIVE_START);
   d->flags.behind = behind;
@@ -63,8 +64,8 @@ static void start_step(drive_t* d) {
   if (d->flags.invalid > 0u && !d->flags.gates_off) d->flags.invalid--;
 }
 
-static estimator_output_t start_estimate(drive_t* d, estimator_input_t* in) {
-  return start_phases[starting.phase]->estimate(d, in);
+static estimator_output_t start_estimate(const drive_t* d, drive_estimate_t* e, estimator_input_t* in) {
+  return start_phases[starting.phase]->estimate(d, e, in);
 }
 
 const state_t start_state = {start_begin, start_step, start_estimate, NULL};

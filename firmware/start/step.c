@@ -54,7 +54,7 @@ start_phase_t start_at_standstill(const drive_t* d) {
 bool start_begin_standstill(drive_t* d) {
   d->flags.shorted = false;
   d->control.references.closed = false;
-  position_preset(d, 0, 0);
+  position_preset(d, &d->estimate, 0, 0);
   axis_begin(&starting.axis);
   if (d->flags.gates_off) start_power(d, true);
   return d->state == DRIVE_START;
@@ -74,12 +74,12 @@ void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
 
 static void judge_wiring(drive_t* d) {
   if (!checks_wiring()) return;
-  d->wiring = wiring_judge(&starting.axis, &d->model, q_shr(d->config.slopes.amps_per_code_q30, 10));
+  d->wiring = wiring_judge(&starting.axis, &d->estimate.model, q_shr(d->config.slopes.amps_per_code_q30, 10));
 }
 
 bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam) {
   drive_start_t* const s = &starting;
-  if (valid) axis_add(&s->axis, &d->position.avv.regression);
+  if (valid) axis_add(&s->axis, &d->estimate.avv.regression);
   if (!axis_is_complete(&s->axis)) {
     if (s->tick > AXIS_TIMEOUT) drive_trip(d, (d->samples.count > 0u) ? FAULT_START_VOLTAGE : FAULT_NO_SAMPLES);
     return false;
@@ -89,8 +89,8 @@ bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam) {
     judge_wiring(d);
     if (start_is_open_loop(d)) return true;
   }
-  const axis_result_t axis = axis_evaluate(&s->axis, &d->model);
-  inverse_inductance_preset(&d->model, axis.mean_q30, axis.half_q30);
+  const axis_result_t axis = axis_evaluate(&s->axis, &d->estimate.model);
+  inverse_inductance_preset(&d->estimate.model, axis.mean_q30, axis.half_q30);
   s->uniform = axis_is_hidden(axis.mean_q30, axis.half_q30);
   *axis_bam = axis.angle_bam;
   return true;

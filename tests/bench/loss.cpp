@@ -22,7 +22,7 @@ constexpr double kHalfPeriod = 0.5e-4;
 
 void kick(double degrees) {
   const auto turn = static_cast<std::uint32_t>(std::llround(std::ldexp(degrees / 360.0, 32)));
-  drive_position_t& p = drive.position;
+  drive_estimate_t& p = drive.estimate;
   p.avv.observer.angle_bam += turn;
   p.observer.angle_bam += turn;
   paper_zvv.angle_bam += turn;

@@ -232,7 +232,7 @@ TEST(BoardStore, ControlIsNotDisturbedByASave) {
   ASSERT_EQ(save(board), STORE_SAVED);
   const auto periods = static_cast<std::uint16_t>((board.chip.now() - begin) / kPeriod);
   EXPECT_NEAR(static_cast<std::uint16_t>(drive.heartbeat - before), periods, 1);
-  EXPECT_EQ(drive.supervision.overrun, 0);
+  EXPECT_EQ(drive.modulation.overrun, 0);
 }
 
 TEST(VirtualBoardStore, TheEepromOutlivesTheBoard) {

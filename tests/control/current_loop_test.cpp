@@ -30,7 +30,6 @@ class Loop {
   void scale(double factor) {
     for (pi_config_t* axis : {&config_.d, &config_.q}) {
       axis->kp_q20 = raw(real(axis->kp_q20, 20) * factor, 20);
-      axis->ki_q20 = raw(real(axis->ki_q20, 20) * factor, 20);
     }
   }
 

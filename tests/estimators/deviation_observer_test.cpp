@@ -241,7 +241,7 @@ TEST(DeviationObserver, NothingIsLeftBeforeAWindowWasSeen) {
   deviation_observer_t s = {};
   dq_t residual = {5, 6};
   std::int32_t span = 7, periods = 8;
-  EXPECT_FALSE(deviation_observer_take_mean_residual(&s, &residual, &span, &periods));
+  EXPECT_FALSE(deviation_take_mean_residual(&s.residual, &residual, &span, &periods));
   EXPECT_EQ(residual.d, 5);
   EXPECT_EQ(span, 7);
   EXPECT_EQ(periods, 8);

@@ -302,13 +302,13 @@ TEST(DeviationSteps, WhatIsLeftIsTheMeanBySpans) {
   }
   dq_t residual = {};
   std::int32_t span = 0, periods = 0;
-  ASSERT_TRUE(deviation_observer_take_mean_residual(&o.state, &residual, &span, &periods));
+  ASSERT_TRUE(deviation_take_mean_residual(&o.state.residual, &residual, &span, &periods));
   // each period's changes are rounded to 0.49 mA
   EXPECT_NEAR(real(residual.d, 20), sum.x / ticks, 3 * 2.5e-4 * 10000 / ticks);
   EXPECT_NEAR(real(residual.q, 20), sum.y / ticks, 3 * 2.5e-4 * 10000 / ticks);
   EXPECT_EQ(span, ticks / 3);
   EXPECT_EQ(periods, 3);
-  EXPECT_FALSE(deviation_observer_take_mean_residual(&o.state, &residual, &span, &periods));
+  EXPECT_FALSE(deviation_take_mean_residual(&o.state.residual, &residual, &span, &periods));
 }
 
 // Of windows that nobody asks for nothing is kept: after fifteen periods it begins anew.
@@ -322,7 +322,7 @@ TEST(DeviationSteps, WhatNobodyTakesIsForgotten) {
     for (int n = 0; n < count; ++n) (void)deviation_observer_step(&o.state, &o.config, in.get());
     dq_t residual = {};
     std::int32_t span = 0, periods = 0;
-    EXPECT_EQ(deviation_observer_take_mean_residual(&o.state, &residual, &span, &periods), true) << count;
+    EXPECT_EQ(deviation_take_mean_residual(&o.state.residual, &residual, &span, &periods), true) << count;
     EXPECT_EQ(periods, kept);
     EXPECT_EQ(span, 5000);
   }

@@ -154,7 +154,7 @@ TEST_F(Inertia, WhatARunUpFindsIsHandedOn) {
   inside::observer().load_accel_q8 = raw(-7000.0, 8);
   inside::observer().speed_bpp = bpp_of(20);
   const double accel = inside::model().accel_q12, share = inside::speed_controller().gains.amps_per_bpp;
-  drive_match_inertia(&drive);
+  inside::match_inertia();
   const double ratio = real(inertia_match.ratio_q24, 24);
   EXPECT_NEAR(ratio, 2.0, 0.1);
   EXPECT_NEAR(inside::model().accel_q12 / accel, ratio, 1e-3);
@@ -169,7 +169,7 @@ TEST_F(Inertia, ASpeedBeyondTheModelsIsItsEnd) {
   inertia_match.speed0_bpp = MACHINE_SPEED_END_BPP - 1000;
   inertia_match.turned = raw(60.0, 24);
   inertia_match.expected = raw(30.0, 24);
-  drive_match_inertia(&drive);
+  inside::match_inertia();
   EXPECT_EQ(inside::observer().speed_bpp, MACHINE_SPEED_END_BPP);
 }
 
@@ -178,7 +178,7 @@ TEST_F(Inertia, ARunUpUnderLittleTorqueSaysNothing) {
   for (const double share : {0.29, 0.31}) {
     SetUp();
     run_up(share);
-    drive_match_inertia(&drive);
+    inside::match_inertia();
     EXPECT_EQ(inertia_match.ratio_q24 != INERTIA_SAME_Q24, share > 0.3) << share;
   }
 }
@@ -188,7 +188,7 @@ TEST_F(Inertia, TheReferenceIsReachedWithin20Rpm) {
   for (const int off : {-21, -19, 19, 21}) {
     SetUp();
     inside::selected().speed_bpp = bpp_of(100 + off);
-    drive_match_inertia(&drive);
+    inside::match_inertia();
     EXPECT_EQ(inertia_match.quiet_ms, std::abs(off) < 20 ? 1 : 0) << off;
   }
 }
@@ -197,12 +197,12 @@ TEST_F(Inertia, TheReferenceIsReachedWithin20Rpm) {
 TEST_F(Inertia, ARunUpBeginsWithTheRampAfterARest) {
   inside::torque_accel_q8() = raw(160.0, 8);
   inside::selected().angle_bam = 0x12345678u;
-  for (int n = 0; n < 30; ++n) drive_match_inertia(&drive);
+  for (int n = 0; n < 30; ++n) inside::match_inertia();
   EXPECT_EQ(inertia_match.phase, INERTIA_REST);
   EXPECT_GT(inertia_match.base_q8, raw(100.0, 8));
   EXPECT_EQ(inertia_match.angle_bam, 0x12345678u);
   inside::speed_ramp().value += 1;
-  drive_match_inertia(&drive);
+  inside::match_inertia();
   EXPECT_EQ(inertia_match.phase, INERTIA_RUN_UP);
   EXPECT_EQ(inertia_match.speed0_bpp, inside::selected().speed_bpp);
 }
@@ -215,7 +215,7 @@ TEST_F(Inertia, NothingIsLearntWithoutTheMapTheParameterAndTheObserver) {
     if (missing == 1) inside::config().mapped = false;
     if (missing == 2) inside::config().values.inertia_adapt = 0;
     if (missing == 3) use_source(POSITION_OBSERVER_AVV);
-    drive_match_inertia(&drive);
+    inside::match_inertia();
     EXPECT_EQ(inertia_match.ratio_q24 != INERTIA_SAME_Q24, missing == 0) << missing;
   }
 }
@@ -225,7 +225,7 @@ TEST_F(Inertia, OutsideOfRunARunUpIsForgotten) {
     run_up(0.5);
     inertia_match.quiet_ms = 30;
     inside::state() = state;
-    drive_match_inertia(&drive);
+    inside::match_inertia();
     EXPECT_EQ(inertia_match.phase, INERTIA_REST);
     EXPECT_EQ(inertia_match.quiet_ms, 0);
     EXPECT_EQ(inertia_match.ratio_q24, INERTIA_SAME_Q24);

@@ -78,7 +78,7 @@ inline spin_t spun(double flux, double inertia, double friction, double resistan
   spin_t s{};
   for (int k = 0; k < 3; ++k) {
     const double current = friction * speed[k] / kt;
-    s.station[k].periods = 5000;
+    s.station[k].periods = s.station[k].torque_periods = 5000;
     s.station[k].speed = 5000LL * std::llround(speed[k] * bpp);
     s.station[k].current_q = 5000LL * raw(current, 20);
     s.station[k].voltage_q = 5000LL * raw(flux * pairs * speed[k] + resistance * current + offset, 16);
@@ -86,7 +86,7 @@ inline spin_t spun(double flux, double inertia, double friction, double resistan
   for (int k = 0; k < 2; ++k) {
     const double change = speed[k + 1] - speed[k];
     const double current = (inertia * change / (5000 * kPeriod) + friction * 40.0) / kt;
-    s.ramp[k].periods = 5000;
+    s.ramp[k].periods = s.ramp[k].torque_periods = 5000;
     s.ramp[k].speed = 5000LL * std::llround(40.0 * bpp);
     s.ramp[k].current_q = 5000LL * raw(current, 20);
   }

@@ -177,7 +177,7 @@ class Drive : public ::testing::Test {
   /// What is learnt of windows without a machine behind them would soon be a fault.
   static void forget_windows() {
     if (!drive_is_energised() || inside::state() == DRIVE_START) return;
-    position_preset(&drive, 0, 0);
+    inside::preset(0, 0);
     inside::sensor_trim().mismatch_q30 = 0;
     inside::supervision() = drive_supervision_t{};
   }

@@ -56,10 +56,11 @@ TEST_F(SpeedTask, WeakeningIsForAShaftThatTurns) {
 }
 
 // What weakening and maximum torque per ampere ask for, whichever is more, and what is wanted at low speed on top,
-// where the observer is in use there; but weakening none of it in a commissioning.
+// where the observer is in use there; but weakening none of it in a commissioning, which has what its spin asks for.
 TEST_F(SpeedTask, TheFieldCurrentIsTheLeastOfItsReasons) {
   parameters.id_low_speed = raw(1.5, 20);
   use_parameters();
+  inside::spin_d_q20() = raw(0.75, 20);
   inside::reference_dq_q20().q = raw(9.0, 20);
   const double best = real(mtpa_current_q20(&inside::config().mtpa, raw(9.0, 20)), 20);
   ASSERT_LT(best, -0.3);
@@ -77,7 +78,8 @@ TEST_F(SpeedTask, TheFieldCurrentIsTheLeastOfItsReasons) {
                         {best / 2, 1, BLEND_LOW, DRIVE_RUN, best + 1.5},
                         {-4.0, 1, BLEND_HIGH, DRIVE_RUN, -4.0},
                         {0.0, 1, BLEND_HIGH, DRIVE_RUN, best},
-                        {0.0, 1, BLEND_LOW, DRIVE_COMMISSION, 0.0},
+                        {0.0, 1, BLEND_LOW, DRIVE_COMMISSION, 0.75},
+                        {-4.0, 1, BLEND_HIGH, DRIVE_COMMISSION, -3.25},
                         {-20.0, 0, BLEND_LOW, DRIVE_RUN, -10.0}};
   for (const Case& c : cases) {
     parameters.mtpa = c.mtpa;

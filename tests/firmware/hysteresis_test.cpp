@@ -46,6 +46,13 @@ class Hysteresis : public Drive {
     drive_control_interrupt();
   }
 
+  /// The two hooks of the control interrupt.
+  static bool take_samples() {
+    return hysteresis_control.samples(&drive, &inside::samples(), &inside::current_dq_q20(),
+                                      &inside::missing_windows());
+  }
+  static bool control_step() { return hysteresis_control.step(&drive, &inside::modulation()); }
+
   static std::uint16_t code(double amps) { return static_cast<std::uint16_t>(std::lround(2048.0 + amps * 102.4)); }
 
   double band() const { return real(::hysteresis.band_q20, 20); }
@@ -233,7 +240,7 @@ TEST_F(Hysteresis, ReferencesAreThoseOfTheInstantAndGoOnForAPeriod) {
     parameters.slice_time = raw(tick == 0 ? 5.0 : 10.0, 16);
     use_parameters();
     const int slices = tick == 0 ? 20 : 10;
-    ASSERT_TRUE(hysteresis_control.step(&drive));
+    ASSERT_TRUE(control_step());
     const double passed = std::min(tick, 10000) / 10000.0;
     const auto codes = [&](double periods, double behind) {
       return reference.turned(begin + speed * periods - behind).x * 102.4;
@@ -252,7 +259,7 @@ TEST_F(Hysteresis, SlicesBecomeCurrentAndLinkOfTheirPeriod) {
   hysteresis_t& h = ::hysteresis;
   h.offset_a_q8 = raw(2048.0 + 10.24, 8);
   h.offset_b_q8 = raw(2048.0 - 20.48, 8);
-  hysteresis_control.samples(&drive);
+  (void)take_samples();
   board.slice.link = 2000;
   inside::link_q16() = raw(300.0, 16);
   for (int n = 0; n < 5; ++n) slice(n < 3 ? 4.1 : -0.9, 2.3);  // 2.0 and 2.5 A
@@ -260,7 +267,7 @@ TEST_F(Hysteresis, SlicesBecomeCurrentAndLinkOfTheirPeriod) {
   inside::selected().speed_bpp = raw(0.2 / kTurn, 32);
   inside::missing_windows() = 3;
   inside::window_count() = 2;
-  hysteresis_control.samples(&drive);
+  (void)take_samples();
   const Vector wanted = Vector{2.0, (2.0 + 2.0 * 2.5) / std::sqrt(3.0)}.turned(-0.5);
   EXPECT_NEAR(real(inside::current_dq_q20().d, 20), wanted.x, 0.01);
   EXPECT_NEAR(real(inside::current_dq_q20().q, 20), wanted.y, 0.01);
@@ -273,12 +280,12 @@ TEST_F(Hysteresis, SlicesBecomeCurrentAndLinkOfTheirPeriod) {
   // Taken once: without a slice everything stays, and the period counts as one without samples.
   const dq_t before = inside::current_dq_q20();
   for (int n = 1; n < 4; ++n) {
-    hysteresis_control.samples(&drive);
+    (void)take_samples();
     EXPECT_EQ(inside::missing_windows(), n);
     EXPECT_EQ(inside::current_dq_q20().d, before.d);
   }
   slice(1.1, -0.7);
-  hysteresis_control.samples(&drive);
+  (void)take_samples();
   EXPECT_NEAR(std::hypot(real(inside::current_dq_q20().d, 20), real(inside::current_dq_q20().q, 20)), 1.0, 0.01)
       << "of this slice alone";
 }
@@ -309,10 +316,10 @@ TEST_F(Hysteresis, TheBandMovesByAnEighthOfTheFrequencysErrorEvery10Milliseconds
     h.periods = 0;
     h.switched = static_cast<std::uint16_t>(h.counted + 30 * kilohertz);
     for (int n = 0; n < 99; ++n) {
-      (void)hysteresis_control.step(&drive);
+      (void)control_step();
       EXPECT_EQ(h.band_q20, raw(amps, 20)) << n;
     }
-    (void)hysteresis_control.step(&drive);
+    (void)control_step();
     EXPECT_EQ(h.counted, h.switched);
     return real(h.band_q20, 20);
   };
@@ -328,9 +335,9 @@ TEST_F(Hysteresis, TheBandMovesByAnEighthOfTheFrequencysErrorEvery10Milliseconds
 TEST_F(Hysteresis, PulsesBeginWithoutOldWindows) {
   inside::sliced() = 0;
   for (int n = 0; n < 2; ++n) drive_window_interrupt();
-  (void)hysteresis_control.step(&drive);
+  (void)control_step();
   inside::state() = DRIVE_READY;
-  EXPECT_FALSE(hysteresis_control.step(&drive));
+  EXPECT_FALSE(control_step());
   EXPECT_EQ(sampling_swap()->count, 0);
   EXPECT_EQ(sampling_swap()->count, 0);
 }
@@ -347,7 +354,7 @@ TEST_F(Hysteresis, ARunBeginsAnew) {
   parameters.slice_time = raw(10.0, 16);
   use_parameters();
   board.slice_ticks = 0;
-  EXPECT_TRUE(hysteresis_control.step(&drive));
+  EXPECT_TRUE(control_step());
   const hysteresis_t& h = ::hysteresis;
   EXPECT_EQ(board.slice_ticks, 1000);
   EXPECT_EQ(h.sums.slices + h.sums.a_q8 + h.sums.b_q8 + h.sums.peak_q8, 0);
@@ -365,7 +372,7 @@ TEST_F(Hysteresis, SpaceVectorsHaveTheOtherStatesAndTheOtherLaw) {
       use_parameters();
       inside::state() = state;
       const bool wanted = law == 1 && (state == DRIVE_RUN || state == DRIVE_STOP);
-      EXPECT_EQ(hysteresis_control.step(&drive), wanted) << law << state;
+      EXPECT_EQ(control_step(), wanted) << law << state;
       EXPECT_EQ(board.slice_ticks, wanted ? 500 : 0);
       EXPECT_EQ(inside::sliced(), wanted ? 1 : 0);
     }
@@ -378,7 +385,7 @@ TEST_F(Hysteresis, ItsStepsSayWhatTheyTake) {
   slice();
   EXPECT_EQ(spent(), CYCLES_SLICE);
   board.profile.clear();
-  (void)hysteresis_control.step(&drive);
+  (void)control_step();
   EXPECT_EQ(spent(), CYCLES_REFER);
 }
 
@@ -386,11 +393,11 @@ TEST_F(Hysteresis, ItsStepsSayWhatTheyTake) {
 TEST_F(Hysteresis, TheCurrentControlRests) {
   inside::loop_is_closed() = true;
   inside::command_dq_q16() = {raw(10.0, 16), raw(-20.0, 16)};
-  inside::current_controller().q.integral = 1234567;
-  drive_control_current(&drive, &inside::current_controller(), &inside::command_dq_q16());
+  inside::current_controller().q.integral_q20 = 1234567;
+  inside::current_step();
   EXPECT_EQ(inside::command_dq_q16().d, 0);
   EXPECT_EQ(inside::command_dq_q16().q, 0);
-  EXPECT_EQ(inside::current_controller().q.integral, 0);
+  EXPECT_EQ(inside::current_controller().q.integral_q20, 0);
 }
 
 }  // namespace

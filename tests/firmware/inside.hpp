@@ -6,9 +6,11 @@
 
 extern "C" {
 #include "firmware/api/status.h"
+#include "firmware/drive/inertia.h"
+#include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
-#include "firmware/sources/sources.h"
+#include "firmware/sources/observer/observer.h"
 #include "firmware/start/step.h"
 }
 
@@ -20,21 +22,21 @@ inline auto& config_valid() { return drive.config_valid; }
 inline auto& conflict() { return drive.conflict; }
 inline auto& conflict_known() { return drive.conflict_known; }
 inline auto& control() { return drive.control; }
+inline auto& estimate() { return drive.estimate; }
 inline auto& fault() { return drive.fault; }
 inline auto& flags() { return drive.flags; }
 inline auto& heartbeat() { return drive.heartbeat; }
 int32_t& heat_sink_q8();  // board_derating_test.cpp
-inline auto& limits() { return drive.limits; }
+inline auto& limits() { return drive.control.limits; }
 inline auto& loading() { return feature_status.loading; }
-inline auto& model() { return drive.model; }
+inline auto& model() { return drive.estimate.model; }
 inline auto& periods() { return drive.periods; }
-inline auto& position() { return drive.position; }
 inline auto& request() { return drive.request; }
 inline auto& samples() { return drive.samples; }
 inline auto& schedule() { return drive.schedule; }
-inline auto& sensor_trim() { return drive.trim; }
+inline auto& sensor_trim() { return drive.estimate.trim; }
 inline auto& settled_at() { return drive.settled_at; }
-inline auto& sliced() { return drive.sliced; }
+inline auto& sliced() { return drive.modulation.sliced; }
 inline auto& source() { return drive.source; }
 inline auto& start_found() { return starting; }
 inline auto& state() { return drive.state; }
@@ -45,7 +47,7 @@ inline auto& zero_current_a_q8() { return drive.zero_current_a_q8; }
 inline auto& zero_current_b_q8() { return drive.zero_current_b_q8; }
 
 // The last period's windows.
-inline auto& frames() { return drive.position.frames; }
+inline auto& frames() { return drive.estimate.frames; }
 inline auto& link_end_q16() { return drive.samples.link_end_q16; }
 inline auto& link_q16() { return drive.samples.link_q16; }
 inline auto& ripple_q16() { return drive.samples.ripple_q16; }
@@ -54,23 +56,23 @@ inline auto& window_count() { return drive.samples.count; }
 inline auto& windows() { return drive.samples.windows; }
 
 // Angle and speed.
-inline auto& avv() { return drive.position.avv; }
-inline auto& blend() { return drive.position.blend; }
+inline auto& avv() { return drive.estimate.avv; }
+inline auto& blend() { return drive.estimate.blend; }
 inline auto& deviation_q20() { return source_deviation_q20; }
-inline auto& high_speed_estimate() { return drive.position.high; }
-inline auto& is_near() { return drive.position.is_near; }
-inline auto& low_speed_estimate() { return drive.position.low; }
-inline auto& observer() { return drive.position.observer; }
-inline auto& seen() { return drive.position.seen; }
-inline auto& selected() { return drive.position.selected; }
-inline auto& torque_accel_q8() { return drive.position.torque_accel_q8; }
+inline auto& high_speed_estimate() { return drive.estimate.high; }
+inline auto& is_near() { return drive.estimate.is_near; }
+inline auto& low_speed_estimate() { return drive.estimate.low; }
+inline auto& observer() { return drive.estimate.observer; }
+inline auto& seen() { return drive.estimate.seen; }
+inline auto& selected() { return drive.estimate.selected; }
+inline auto& torque_accel_q8() { return drive.estimate.torque_accel_q8; }
 
 // Speed and current control.
 inline auto& braking_headroom_q20() { return drive.control.braking_headroom_q20; }
 inline auto& command_dq_q16() { return drive.control.command_q16; }
 inline auto& command_rpm_q16() { return drive.control.command_rpm_q16; }
 inline auto& current_controller() { return drive.control.current; }
-inline auto& current_dq_q20() { return drive.control.measured_q20; }
+inline auto& current_dq_q20() { return drive.estimate.measured_q20; }
 inline auto& current_limit_q20() { return drive.control.current_limit_q20; }
 inline auto& feed_forward_q16() { return drive.control.references.feed_forward_q16; }
 inline auto& field_weakening() { return drive.control.weakening; }
@@ -82,10 +84,12 @@ inline auto& reference_dq_q20() { return drive.control.references.current_q20; }
 inline auto& speed_controller() { return drive.control.speed; }
 inline auto& speed_ramp() { return drive.control.ramp; }
 inline auto& speed_ready() { return drive.control.speed_ready; }
+inline auto& spin_d_q20() { return drive.control.spin_d_q20; }
 inline auto& target_bpp() { return drive.control.target_bpp; }
 inline auto& weakening_q20() { return drive.control.weakening_q20; }
 
 // The modulator.
+inline auto& modulation() { return drive.modulation; }
 inline auto& modulated_q16() { return drive.modulation.command_q16; }
 inline auto& modulator() { return drive.modulation.state; }
 inline auto& running_pattern() { return drive.modulation.patterns[drive.modulation.running]; }
@@ -96,9 +100,30 @@ inline auto& diverged_periods() { return drive.supervision.diverged_periods; }
 inline auto& judged_at() { return drive.supervision.judged_at; }
 inline auto& judged_bam() { return drive.supervision.judged_bam; }
 inline auto& missing_windows() { return drive.supervision.missing; }
-inline auto& overruns() { return drive.supervision.overrun; }
+inline auto& overruns() { return drive.modulation.overrun; }
 inline auto& stopping_periods() { return drive.supervision.stopping_periods; }
 inline auto& synchronism() { return drive.supervision.synchronism; }
+
+// The steps of the control interrupt, as that has them.
+inline void estimate_step() { drive_estimate(&drive, &drive.estimate); }
+inline void protect_step() {
+  const drive_fault_t fault = drive_protect(&drive, &drive.supervision, &drive.estimate.observer.residual);
+  if (fault != FAULT_NONE) drive_trip(&drive, fault);
+}
+inline void speed_step() { drive_control_speed(&drive, &drive.control, &drive.estimate); }
+inline void current_step() { drive_control_current(&drive, &drive.control); }
+inline void modulate_step() { drive_modulate(&drive, &drive.modulation, &drive.control); }
+inline void match_inertia() { drive_match_inertia(&drive, &drive.estimate, &drive.control.speed); }
+
+// Where the estimators begin.
+inline void preset(std::uint32_t angle_bam, std::int32_t speed_bpp) {
+  position_preset(&drive, &drive.estimate, angle_bam, speed_bpp);
+}
+inline void preset_axis(std::uint32_t angle_bam, std::int32_t speed_bpp) {
+  position_preset_axis(&drive.estimate, angle_bam, speed_bpp);
+}
+inline void keep_position() { position_keep(&drive, &drive.estimate); }
+inline void transfer_position() { position_bumpless_transfer(&drive.estimate); }
 
 inline std::int32_t signal(std::uint16_t place, std::uint16_t known) { return signal_look(place)(&drive, known); }
 

@@ -39,7 +39,7 @@ class Modulation : public Drive {
   /// The pulses of this excitation, and whether they are those that the drive makes.
   static bool modulates_as(excitation_t excitation) {
     modulator_t state = inside::modulator();
-    drive_modulate(&drive);
+    inside::modulate_step();
     svpwm_pulses_t wanted = {};
     (void)modulator_step(&state, &inside::config().modulator, excitation, inside::modulated_q16(), inside::link_q16(),
                          &wanted);
@@ -51,7 +51,7 @@ class Modulation : public Drive {
 TEST_F(Modulation, TheVoltageIsTurnedToWhereTheRotorWillBe) {
   for (const double speed : {0.12, -0.5}) {
     inside::selected().speed_bpp = raw(speed / kTurn, 32);
-    drive_modulate(&drive);
+    inside::modulate_step();
     const double angle = 0.3 + 1.5 * speed;
     const Vector current = Vector{1.5, -4.0}.turned(angle);
     const Vector drop = real(dead_time_drop_q16(&inside::config().dead_time, raw_ab(current, 20)), 16);
@@ -66,7 +66,7 @@ TEST_F(Modulation, TheVoltageIsTurnedToWhereTheRotorWillBe) {
 }
 
 TEST_F(Modulation, TheFrameIsThePatternsWithItsEdgesAdvanced) {
-  drive_modulate(&drive);
+  inside::modulate_step();
   const svpwm_pattern_t& p = inside::running_pattern();
   const hal_pwm_frame_t& f = board.frame;
   ASSERT_EQ(p.window_count, 2);
@@ -87,8 +87,8 @@ TEST_F(Modulation, TheFrameIsThePatternsWithItsEdgesAdvanced) {
   std::uint16_t edges[SVPWM_EDGES];
   const double angle = 0.3 + 1.5 * 0.12;
   const machine_model_t& m = inside::model();
-  const svpwm_carried_t carried = {raw_ab(Vector{1.5, -4.0}.turned(angle), 20), (m.yd_q30 + m.yq_q30) / 2,
-                                   inside::link_q16()};
+  const svpwm_carried_t carried = {dead_time_shares_q12(&c, raw_ab(Vector{1.5, -4.0}.turned(angle), 20)),
+                                   (m.yd_q30 + m.yq_q30) / 2, inside::link_q16()};
   svpwm_compensate_edges(&c, &inside::config().modulator.sampling, &carried, &again, edges);
   for (unsigned edge = 0; edge < SVPWM_EDGES; ++edge) EXPECT_NEAR(f.edge_tick[edge], edges[edge], 1) << edge;
   for (int k = 0; k < 3; ++k) {
@@ -104,19 +104,19 @@ TEST_F(Modulation, ItsStepSaysWhatItTakes) {
     board.profile.clear();
     inside::state() = DRIVE_START;
     inside::flags().shorted = shorted;
-    drive_modulate(&drive);
+    inside::modulate_step();
     EXPECT_EQ(spent(), CYCLES_MODULATE);
   }
 }
 
 // What was read belongs to the period before; a frame that came too late leaves the one that runs, and is counted.
 TEST_F(Modulation, AFrameThatIsLateLeavesThePatternThatRuns) {
-  drive_modulate(&drive);
+  inside::modulate_step();
   inside::selected().angle_bam = bam(2.0);
   const svpwm_pattern_t first = inside::running_pattern();
   board.late = true;
   for (int n = 1; n < 4; ++n) {
-    drive_modulate(&drive);
+    inside::modulate_step();
     EXPECT_EQ(inside::overruns(), n);
     EXPECT_EQ(inside::limits() & LIMIT_OVERRUN, LIMIT_OVERRUN);
     EXPECT_EQ(std::memcmp(&first, &inside::running_pattern(), sizeof first), 0);
@@ -124,7 +124,7 @@ TEST_F(Modulation, AFrameThatIsLateLeavesThePatternThatRuns) {
   }
   board.late = false;
   inside::limits() = 0;
-  drive_modulate(&drive);
+  inside::modulate_step();
   EXPECT_EQ(inside::overruns(), 0) << "in a row";
   EXPECT_EQ(inside::limits() & LIMIT_OVERRUN, 0);
   EXPECT_EQ(std::memcmp(&first, &inside::sampled_pattern(), sizeof first), 0);
@@ -135,12 +135,12 @@ TEST_F(Modulation, AFrameThatIsLateLeavesThePatternThatRuns) {
 TEST_F(Modulation, ALimitIsToldBesideTheOthers) {
   board.late = true;
   inside::limits() = LIMIT_CURRENT | LIMIT_BRAKING;
-  drive_modulate(&drive);
+  inside::modulate_step();
   EXPECT_EQ(inside::limits(), LIMIT_CURRENT | LIMIT_BRAKING | LIMIT_OVERRUN);
   board.late = false;
   inside::limits() = LIMIT_CURRENT | LIMIT_WEAKENING;
   inside::command_dq_q16() = raw_dq({-150.0, 250.0}, 16);
-  drive_modulate(&drive);
+  inside::modulate_step();
   EXPECT_EQ(inside::limits(), LIMIT_CURRENT | LIMIT_WEAKENING | LIMIT_VOLTAGE);
 }
 
@@ -152,11 +152,11 @@ TEST_F(Modulation, AVoltageThatTheLinkHasNotComesOffTheIntegrators) {
     inside::current_dq_q20() = {0, 0};
     inside::command_dq_q16() = raw_dq({-150.0, 250.0}, 16);
     current_controller_t& c = inside::current_controller();
-    c.d.integral = raw(-150.0, 20);
-    c.q.integral = raw(250.0, 20);
-    drive_modulate(&drive);
+    c.d.integral_q20 = raw(-150.0, 20);
+    c.q.integral_q20 = raw(250.0, 20);
+    inside::modulate_step();
     EXPECT_EQ(inside::limits() & LIMIT_VOLTAGE, closed ? LIMIT_VOLTAGE : 0);
-    const double d = real(c.d.integral, 20) + 150.0, q = real(c.q.integral, 20) - 250.0;
+    const double d = real(c.d.integral_q20, 20) + 150.0, q = real(c.q.integral_q20, 20) - 250.0;
     if (closed) {
       EXPECT_GT(d, 1.0);
       // a quarter of the bandwidth is both axes' corner: what comes off has the direction of the command
@@ -208,7 +208,7 @@ TEST_F(Modulation, AStartAndACommissioningLiveOnOppositeVectors) {
 // Whatever voltage is asked: all lower devices on for the whole period, which three windows share.
 TEST_F(Modulation, AShortedMachineHasAPatternOfItsOwn) {
   inside::flags().shorted = true;
-  drive_modulate(&drive);
+  inside::modulate_step();
   const sampling_config_t& c = inside::config().modulator.sampling;
   const svpwm_pattern_t& p = inside::running_pattern();
   ASSERT_EQ(p.window_count, 3);
@@ -231,7 +231,7 @@ TEST_F(Modulation, AShortedMachineHasAPatternOfItsOwn) {
 TEST_F(Modulation, OnlyAStartShortsTheMachine) {
   inside::flags().shorted = true;
   drive_enter(&drive, DRIVE_RUN);
-  drive_modulate(&drive);
+  inside::modulate_step();
   const auto& at = inside::running_pattern().pulses.at;
   EXPECT_GE(*std::max_element(std::begin(at), std::end(at)), 0);
 }
@@ -239,12 +239,12 @@ TEST_F(Modulation, OnlyAStartShortsTheMachine) {
 // An open loop commands nothing, and begins anew.
 TEST_F(Modulation, AnOpenLoopCommandsNoVoltageAndForgets) {
   inside::loop_is_closed() = false;
-  inside::current_controller().d.integral = inside::current_controller().q.integral = 99999;
-  drive_control_current(&drive, &inside::current_controller(), &inside::command_dq_q16());
+  inside::current_controller().d.integral_q20 = inside::current_controller().q.integral_q20 = 99999;
+  inside::current_step();
   EXPECT_EQ(inside::command_dq_q16().d, 0);
   EXPECT_EQ(inside::command_dq_q16().q, 0);
-  EXPECT_EQ(inside::current_controller().d.integral, 0);
-  EXPECT_EQ(inside::current_controller().q.integral, 0);
+  EXPECT_EQ(inside::current_controller().d.integral_q20, 0);
+  EXPECT_EQ(inside::current_controller().q.integral_q20, 0);
 }
 
 TEST_F(Modulation, WithADividerOfTwoTheCommandStandsStillInEverySecondPeriod) {
@@ -260,7 +260,7 @@ TEST_F(Modulation, WithADividerOfTwoTheCommandStandsStillInEverySecondPeriod) {
       const dq_t wanted =
           current_controller_step(&copy, &inside::config().current, &inside::model(), inside::reference_dq_q20(),
                                   inside::current_dq_q20(), inside::selected().speed_bpp);
-      drive_control_current(&drive, &inside::current_controller(), &inside::command_dq_q16());
+      inside::current_step();
       const bool steps = divider == 1 || period % 2 == 0;
       EXPECT_EQ(inside::command_dq_q16().d, steps ? wanted.d : before.d) << divider << period;
       EXPECT_EQ(inside::command_dq_q16().q, steps ? wanted.q : before.q) << divider << period;
@@ -274,7 +274,7 @@ TEST_F(Modulation, WhatIsFedComesOnTopAlongQ) {
     inside::schedule().period = 0;
     current_controller_reset(&inside::current_controller());
     inside::feed_forward_q16() = feed_forward_q16;
-    drive_control_current(&drive, &inside::current_controller(), &inside::command_dq_q16());
+    inside::current_step();
     return inside::command_dq_q16();
   };
   const dq_t without = command(0);

@@ -28,7 +28,7 @@ class Position : public Drive {
     inside::state() = DRIVE_RUN;
     inside::schedule().turning = true;
     polarity_watch.open = false;
-    position_preset(&drive, kHere, 0);
+    inside::preset(kHere, 0);
     inside::current_dq_q20() = {0, 0};
     see(2);
   }
@@ -70,7 +70,7 @@ class Sources : public Position {
   /// In a period of this turn.
   static void estimate(schedule_slot_t turn = SCHEDULE_SLOTS) {
     inside::schedule().slot = turn;
-    drive_estimate(&drive);
+    inside::estimate_step();
   }
   static dq_t measured() { return inside::current_dq_q20(); }
 };

@@ -28,7 +28,7 @@ TEST_F(Sources, ACommissioningsSpinRunsOnTheObserver) {
 TEST_F(Sources, TheEncoderHasAngleAndSpeed) {
   run_with(POSITION_ENCODER);
   board.encoder = 3000;
-  position_preset(&drive, kHere, bpp(80.0));
+  inside::preset(kHere, bpp(80.0));
   EXPECT_EQ(encoder.observer.angle_bam, kHere);
   EXPECT_EQ(encoder.observer.speed_bpp, bpp(80.0));
   see(0);
@@ -52,7 +52,7 @@ TEST_F(Sources, TheEncoderHasAngleAndSpeed) {
 TEST_F(Sources, TheEncodersObserverHasTheLongWindowsBandwidth) {
   run_with(POSITION_ENCODER);
   see(0);
-  position_preset(&drive, kHere, 0);
+  inside::preset(kHere, 0);
   encoder.observer.angle_bam = kHere - bam(0.01);
   estimate();
   EXPECT_NEAR(rad(encoder.observer.angle_bam - kHere), -0.01 * (1.0 - 3.0 * 200.0 * kPeriod), 1e-6);
@@ -60,14 +60,14 @@ TEST_F(Sources, TheEncodersObserverHasTheLongWindowsBandwidth) {
 
 TEST_F(Sources, TheEncodersSpeedHasTheModelsEnd) {
   run_with(POSITION_ENCODER);
-  position_preset(&drive, kHere, INT32_MAX);
+  inside::preset(kHere, INT32_MAX);
   EXPECT_EQ(encoder.observer.speed_bpp, MACHINE_SPEED_END_BPP);
 }
 
 // D of the zero vectors, in the frame in use, trim included.
 TEST_F(Sources, BesideTheEncoderTheDeviationIsThatOfTheFrameInUse) {
   run_with(POSITION_ENCODER);
-  position_preset(&drive, kHere, 0);
+  inside::preset(kHere, 0);
   encoder.trim_bam = bam(0.3);
   inside::windows()[0].change_q19 = raw_change({0.02, 0.01}, 3000);
   estimate();
@@ -82,10 +82,10 @@ TEST_F(Sources, AnEncoderThatGoesOnKeepsItsAngle) {
   const std::uint32_t offset = encoder.offset_bam;
   board.encoder = 100;
   inside::selected().angle_bam = kThere;
-  position_keep(&drive);
+  inside::keep_position();
   EXPECT_EQ(encoder.offset_bam, offset);
   EXPECT_EQ(encoder.observer.angle_bam, kHere);
-  position_preset(&drive, kThere, 0);
+  inside::preset(kThere, 0);
   EXPECT_NE(encoder.offset_bam, offset);
   EXPECT_EQ(encoder.observer.angle_bam, kThere);
 }
@@ -95,7 +95,7 @@ TEST_F(Sources, BesideTheEncoderSomebodyLooksOn) {
   NEEDS("sources/flux");
   for (const std::int32_t beside : {0, 1}) {
     run_with(POSITION_ENCODER);
-    position_preset(&drive, kHere, 0);
+    inside::preset(kHere, 0);
     parameters.flux_beside = beside;
     use_parameters();
     inside::avv().observer.angle_bam = kThere;
@@ -115,7 +115,7 @@ TEST_F(Sources, BesideTheEncoderSomebodyLooksOn) {
 TEST_F(Sources, OnlyAnEncoderCanBeReversed) {
   for (const std::int32_t source : {POSITION_ENCODER, POSITION_OBSERVER}) {
     run_with(source);
-    position_preset(&drive, kHere, 0);
+    inside::preset(kHere, 0);
     encoder.observer.angle_bam = kHere + 0x1000000u;
     inside::high_speed_estimate().angle_bam = kHere - 0x1000000u;
     const auto is_reversed = inside::source()->is_reversed;

@@ -124,7 +124,7 @@ TEST_F(Sources, TheFluxMayBeGivenTheShaftAtAnySpeed) {
   NEEDS("sources/flux");
   run_with(POSITION_FLUX_CONV);
   EXPECT_FALSE(position_observer_rests(&drive));
-  position_bumpless_transfer(&drive);
+  inside::transfer_position();
   EXPECT_TRUE(position_observer_rests(&drive));
 }
 

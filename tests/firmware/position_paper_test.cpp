@@ -120,9 +120,9 @@ TEST_F(Sources, ThePapersSourceThatGoesOnKeepsItsAngle) {
   NEEDS("sources/paper");
   run_with(POSITION_PAPER);
   inside::selected().angle_bam = kThere;
-  position_keep(&drive);
+  inside::keep_position();
   EXPECT_EQ(paper_zvv.angle_bam, kHere);
-  position_preset(&drive, kThere, 0);
+  inside::preset(kThere, 0);
   EXPECT_EQ(paper_zvv.angle_bam, kThere);
 }
 

@@ -255,8 +255,8 @@ TEST_F(Sources, EveryEstimatorStartsFromAnAngleAndASpeed) {
     flux_observer.machine.psi_q16 = 0;
     inside::avv().observer.load_accel_q8 = inside::observer().load_accel_q8 = 99;
     const std::int32_t speed = inside::config().blend.high_bpp + 1;
-    position_preset(&drive, kThere, speed);
-    const drive_position_t& p = inside::position();
+    inside::preset(kThere, speed);
+    const drive_estimate_t& p = inside::estimate();
     for (const estimator_output_t& out : {p.selected, p.low, p.high}) {
       EXPECT_EQ(out.angle_bam, kThere);
       EXPECT_EQ(out.speed_bpp, speed);
@@ -284,8 +284,8 @@ TEST_F(Sources, NothingStartsFasterThanTheModelsEnd) {
   NEEDS("sources/paper");
   for (const int sign : {1, -1}) {
     run_with(POSITION_PAPER);
-    position_preset(&drive, kThere, sign * 2000000000);
-    const drive_position_t& p = inside::position();
+    inside::preset(kThere, sign * 2000000000);
+    const drive_estimate_t& p = inside::estimate();
     for (const std::int32_t speed :
          {p.selected.speed_bpp, p.avv.observer.speed_bpp, p.observer.speed_bpp, paper_zvv.speed_bpp})
       EXPECT_EQ(speed, sign * MACHINE_SPEED_END_BPP);
@@ -295,7 +295,7 @@ TEST_F(Sources, NothingStartsFasterThanTheModelsEnd) {
 // A start that looks for the axis has AVV alone at work.
 TEST_F(Sources, AnAxisIsLookedForByAvvAlone) {
   run_with(POSITION_OBSERVER);
-  position_preset_axis(&drive, kThere, 777);
+  inside::preset_axis(kThere, 777);
   EXPECT_EQ(inside::selected().angle_bam, kThere);
   EXPECT_EQ(inside::selected().speed_bpp, 777);
   EXPECT_EQ(inside::avv().observer.angle_bam, kThere);

@@ -11,8 +11,8 @@ extern "C" {
 #include "firmware/drive/steps.h"
 #include "firmware/mode/states.h"
 #include "firmware/sources/flux/flux.h"
+#include "firmware/sources/observer/observer.h"
 #include "firmware/sources/paper/paper.h"
-#include "firmware/sources/sources.h"
 }
 
 namespace {
@@ -33,9 +33,9 @@ TEST_F(Position, ThePapersIdleEstimatorStandsBy) {
     run_with(POSITION_PAPER);
     see(c.windows);
     blend(c.region, c.share);
-    drive_position_t& p = inside::position();
+    drive_estimate_t& p = inside::estimate();
     p.avv.observer.angle_bam = kThere;
-    drive_estimate(&drive);
+    inside::estimate_step();
     const double apart = rad(kThere - kHere);  // who runs moves, a thousandth of that
     EXPECT_NEAR(rad(paper_zvv.angle_bam - kHere), c.zvv ? 0.0 : apart, 1e-3 * apart) << c.region << c.share;
     EXPECT_NEAR(rad(p.avv.observer.angle_bam - kHere), c.avv ? apart : 0.0, 1e-3 * apart) << c.region << c.share;
@@ -56,7 +56,7 @@ TEST_F(Position, ThePapersEstimatorsTakeTurns) {
       inside::windows()[0].change_q19 = raw_change({0.0, 0.02}, 3000);
       inside::windows()[1].voltage_q19 = {raw(150.0, 19), 0};
       inside::low_speed_estimate().quality_q15 = 12345;
-      drive_estimate(&drive);
+      inside::estimate_step();
       const bool of_zvv = (task == TASK_SPEED || task == TASK_FIELD) != below;
       EXPECT_EQ(paper_zvv.deviation_q20 != 0, of_zvv) << task;
       EXPECT_EQ(inside::low_speed_estimate().quality_q15 == 12345, !of_zvv) << task;
@@ -75,7 +75,7 @@ TEST_F(Position, WindowsAreTurnedAnewWhereAnotherAngleIsInUse) {
     blend(BLEND_LOW, 1.0);
     inside::windows()[0].change_q19 = raw_change({0.02, 0.01}, 3000);
     if (!same) inside::selected().angle_bam = kThere;
-    drive_estimate(&drive);
+    inside::estimate_step();
     const Vector slope = Vector{0.02, 0.01}.turned(-rad(kHere));
     EXPECT_NEAR(real(paper_zvv.deviation_q20, 20), slope.y, 5e-5) << same;
   }
@@ -89,7 +89,7 @@ TEST_F(Position, ZvvTurnsItsWindowsIntoItsOwnFrameBesideAvv) {
   inside::schedule().task = TASK_SPEED;
   inside::high_speed_estimate().angle_bam = inside::avv().observer.angle_bam = kThere;
   inside::windows()[0].change_q19 = raw_change({0.02, 0.01}, 3000);
-  drive_estimate(&drive);
+  inside::estimate_step();
   const Vector slope = Vector{0.02, 0.01}.turned(-rad(kHere));
   EXPECT_NEAR(real(paper_zvv.deviation_q20, 20), slope.y, 5e-5);
 }
@@ -101,7 +101,7 @@ TEST_F(Position, WithoutWindowsNothingIsNearEnoughToLearnFrom) {
     see(windows);
     inside::schedule().slot = SLOT_REGRESSION;
     inside::is_near() = windows == 0;
-    drive_estimate(&drive);
+    inside::estimate_step();
     EXPECT_EQ(inside::is_near(), windows > 0);
   }
 }
@@ -120,7 +120,7 @@ TEST_F(Position, WhatWasNotNearIsNotLearntFromLater) {
       const double half = std::ldexp((m.yd_q30 - m.yq_q30) / 2.0 * r.spread_q8, -22), turned = 2.0 * off * kDegree;
       r.mirror_q16 = static_cast<std::int32_t>(half * (std::cos(turned) - 1.0));
       r.cross_q16 = static_cast<std::int32_t>(half * std::sin(turned));
-      drive_estimate(&drive);
+      inside::estimate_step();
       EXPECT_NEAR(rad(static_cast<std::uint32_t>(inside::avv().error_bam)) / kDegree, off, 0.01);
       EXPECT_EQ(inside::is_near(), near && std::fabs(off) < 15.0) << off;
     }
@@ -160,7 +160,7 @@ TEST_F(Position, WindowsBesideTheFluxAreRegressedAtLowSpeedAndForTheWatch) {
         inside::schedule().slot = asked ? SLOT_REGRESSION : SCHEDULE_SLOTS;
         inside::is_near() = !asked;
         inside::observer().regressed_bam = kThere;
-        drive_estimate(&drive);
+        inside::estimate_step();
         const bool regressed = asked && (region == BLEND_LOW || watched);
         EXPECT_EQ(inside::observer().regressed_bam != kThere, regressed) << region;
         EXPECT_EQ(inside::is_near(), regressed || !asked) << "what was not regressed teaches nothing";
@@ -191,7 +191,7 @@ TEST_F(Position, TheCurrentIsThatInTheFrameInUse) {
       inside::schedule().turning = !starting;
       inside::selected().angle_bam = kThere;
       inside::high_speed_estimate().angle_bam = kHere + 0x01000000u;
-      drive_estimate(&drive);
+      inside::estimate_step();
       const Vector current = Vector{3.0, 1.0}.turned(-rad(kThere));
       // A sum of windows is Q14.
       EXPECT_NEAR(real(inside::current_dq_q20().d, 20), current.x, 6.5e-5) << c.source << c.region << starting;
@@ -209,7 +209,7 @@ TEST_F(Position, TheFluxFollowsUntilItHasAShare) {
     const estimator_output_t there = {kThere, 0, 0, 32767}, low = {kHere, 0, 0, 32767};
     flux_source_follow(&drive, &there);
     blend(BLEND_LOW, share);
-    (void)flux_source_beside(&drive, &in, &low);
+    (void)flux_source_beside(&drive, &inside::estimate(), &in, &low);
     if (share == 1.0) {
       EXPECT_EQ(inside::high_speed_estimate().angle_bam, kHere);
     } else {
@@ -223,11 +223,11 @@ TEST_F(Position, AHeldShaftIsHeldInRunOnly) {
   run_with(POSITION_OBSERVER);
   brake_release_hold.left = 100;
   EXPECT_TRUE(hold_is_on(&drive));
-  drive_control_speed(&drive);
+  inside::speed_step();
   EXPECT_EQ(brake_release_hold.left, 99u);
   inside::state() = DRIVE_STOP;
   EXPECT_FALSE(hold_is_on(&drive));
-  drive_control_speed(&drive);
+  inside::speed_step();
   EXPECT_EQ(brake_release_hold.left, 99u);
 }
 
@@ -242,7 +242,7 @@ TEST_F(Position, TheRampWaitsForAShaftThatMayNotBeBrakedFaster) {
         inside::target_bpp() = now + sign * change * bpp_of(500);
         inside::limits() = limited ? LIMIT_BRAKING : 0;
         inside::schedule().task = TASK_SPEED;
-        drive_control_speed(&drive);
+        inside::speed_step();
         const bool waits = limited && change < 0;
         EXPECT_EQ(inside::speed_ramp().value == now, waits) << sign << change << limited;
       }
@@ -267,7 +267,7 @@ TEST_F(Position, TheObserverIsToldOfAnInertiaThatIsTakenBack) {
   inside::torque_accel_q8() = s.base_q8;
   inside::observer().load_accel_q8 = raw(300.0, 8);
   inside::observer().speed_bpp = 777;
-  drive_match_inertia(&drive);
+  inside::match_inertia();
   EXPECT_EQ(s.phase, INERTIA_REST);
   EXPECT_EQ(s.ratio_q24, raw(1.0, 24));
   EXPECT_EQ(inside::observer().load_accel_q8, raw(600.0, 8));

@@ -31,7 +31,7 @@ class ProtectionLimits : public Drive {
     inside::windows()[1].current_q20 = second;
   }
   static drive_fault_t judged() {
-    drive_protect(&drive);
+    inside::protect_step();
     return inside::fault();
   }
 };

@@ -140,7 +140,7 @@ TEST_F(Protection, SourcesMustAgreeWhereBothAreInUse) {
     inside::blend().region = c.region;
     inside::low_speed_estimate().quality_q15 = inside::high_speed_estimate().quality_q15 = 32767;
     inside::high_speed_estimate().angle_bam = inside::low_speed_estimate().angle_bam + bam(1.2);
-    drive_protect(&drive);
+    inside::protect_step();
     EXPECT_EQ(inside::fault(), c.counts ? FAULT_DIVERGENCE : FAULT_NONE) << c.source << " " << c.region;
   }
 }
@@ -157,7 +157,7 @@ TEST_F(Protection, TheLimitOfADisagreementIsInDegrees) {
     inside::schedule().judges = true;
     inside::low_speed_estimate().quality_q15 = inside::high_speed_estimate().quality_q15 = 32767;
     inside::high_speed_estimate().angle_bam = inside::low_speed_estimate().angle_bam + bam(part * 50.0 * kDegree);
-    drive_protect(&drive);
+    inside::protect_step();
     EXPECT_EQ(inside::fault(), std::fabs(part) > 1.0 ? FAULT_DIVERGENCE : FAULT_NONE) << part;
   }
 }
@@ -194,7 +194,7 @@ TEST_F(Protection, AnEstimatorWithoutAnAngleIsNoSecondOpinion) {
     inside::low_speed_estimate().quality_q15 = low;
     inside::high_speed_estimate().quality_q15 = high;
     inside::high_speed_estimate().angle_bam = inside::low_speed_estimate().angle_bam + ANGLE_BAM_HALF_TURN;
-    drive_protect(&drive);
+    inside::protect_step();
     EXPECT_EQ(inside::fault(), (low != 0 && high != 0) ? FAULT_DIVERGENCE : FAULT_NONE) << low << " " << high;
   }
 }
@@ -207,13 +207,13 @@ TEST_F(Protection, ResidualsAreJudgedOnce) {
   inside::config().synchronism.bad_periods = 0;
   inside::config().synchronism.floor_q16 = raw(0.5, 16);
   inside::config().synchronism.share_q15 = 0;
-  drive_protect(&drive);
+  inside::protect_step();
   EXPECT_EQ(inside::state(), DRIVE_RUN) << "nothing was seen yet";
   estimator_window_t w = inside::windows()[0];
   w.change_q19 = raw_change({5.0, 5.0}, w.span_ticks);  // no machine of this model does that
   const estimator_input_t in = {&inside::model(), &w, 1, 0, false, false, false, false, nullptr, 0};
   for (int n = 0; n < 4; ++n) (void)deviation_observer_step(&inside::observer(), &inside::config().observer, &in);
-  drive_protect(&drive);
+  inside::protect_step();
   EXPECT_EQ(inside::fault(), FAULT_SYNCHRONISM);
 }
 
@@ -233,7 +233,7 @@ TEST_F(Protection, TheObserverBesideTheFluxIsJudgedByItsResiduals) {
       inside::modulator().is_alternating = true;
       inside::observer().residual = {0, 0, 3000, 1};
       inside::judged_at() = static_cast<std::uint16_t>(inside::heartbeat() - 1u);
-      drive_protect(&drive);
+      inside::protect_step();
       EXPECT_EQ(inside::observer().residual.span_ticks, (!alone && asked) ? 0 : 3000) << alone << asked;
       EXPECT_EQ(inside::judged_at() == inside::heartbeat(), alone || asked) << alone << asked;
     }
@@ -260,7 +260,7 @@ TEST_F(Protection, ThePapersAvvIsJudgedByItsRegression) {
     inside::avv().regression.information = seen ? 1000 : 0;
     for (int n = 0; n < 8; ++n) {
       inside::heartbeat()++;
-      drive_protect(&drive);
+      inside::protect_step();
     }
     EXPECT_EQ(inside::fault(), seen ? FAULT_SYNCHRONISM : FAULT_NONE);
   }
@@ -285,7 +285,7 @@ TEST_F(Protection, TheFramesOwnSpeedIsWhatItHasTurned) {
       inside::heartbeat() = static_cast<std::uint16_t>(inside::heartbeat() + static_cast<unsigned>(since));
       inside::selected().angle_bam += static_cast<std::uint32_t>(since * bpp_of(300 + ahead));
       inside::schedule().judges = true;
-      drive_protect(&drive);
+      inside::protect_step();
       const synchronism_t& s = inside::synchronism();
       const double emf = real(inside::model().emf_q16, 16) * std::ldexp(bpp_of(ahead), -32) * kTurn;
       EXPECT_NEAR(real(s.turned_q16 - s.error_q16.q, 16), since <= 6 ? 0.25 * emf : 0.0, 0.01) << since;
@@ -313,7 +313,7 @@ TEST_F(Protection, AReversedBackEmfIsThePolarity) {
       inside::schedule().slot =
           n % 5 == 0 ? SLOT_VOLTAGE : SCHEDULE_SLOTS;  // the back-EMF's place in the round, and none
       inside::selected().angle_bam += static_cast<std::uint32_t>(speed);
-      drive_protect(&drive);
+      inside::protect_step();
     }
     EXPECT_GT(n, 50);
     EXPECT_EQ(inside::fault(), reversed ? FAULT_POLARITY : FAULT_NONE);

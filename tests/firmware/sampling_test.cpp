@@ -88,7 +88,7 @@ TEST_F(Drive, ADriveAtRestIsNotLimited) {
     dead_time_design(&inside::config().dead_time);
     inside::link_q16() = 0;
     inside::limits() = 0;
-    drive_modulate(&drive);
+    inside::modulate_step();
     EXPECT_EQ(inside::limits() & LIMIT_VOLTAGE, closed ? LIMIT_VOLTAGE : 0);
   }
 }

@@ -31,7 +31,7 @@ class Schedule : public Drive {
     inside::state() = DRIVE_RUN;
     polarity_watch.open = false;
     inside::periods() = 100;
-    position_preset(&drive, 0, 0);
+    inside::preset(0, 0);
     know(0.01);
     inside::current_dq_q20() = {0, 0};
     inside::model().iq_q20 = 0;

@@ -32,12 +32,12 @@ class SpeedTask : public Drive {
   }
   static void part(task_t task) {
     inside::schedule().task = task;
-    drive_control_speed(&drive);
+    inside::speed_step();
   }
   static void millisecond() {
     for (int k = 0; k < 10; ++k) {
       schedule_next(&drive, &inside::schedule());
-      drive_control_speed(&drive);
+      inside::speed_step();
     }
   }
   static void speed(double rad_per_s) { inside::selected() = {0, bpp(rad_per_s), 0, 32767}; }

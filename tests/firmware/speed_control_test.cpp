@@ -169,7 +169,6 @@ TEST_F(SpeedTask, EachPeriodHasItsOwnTask) {
     use_source(POSITION_OBSERVER);
     inside::config().mapped = true;
     drive_control_t& c = inside::control();
-    inside::time_ms() = kMark;
     c.weakening_q20 = kMark;
     inertia_match.ms = kMark;
     c.references.current_q20.d = kMark;
@@ -177,8 +176,7 @@ TEST_F(SpeedTask, EachPeriodHasItsOwnTask) {
     c.braking_headroom_q20 = kMark;
     inside::schedule().period = static_cast<std::uint16_t>((k + 9) % 10);
     schedule_next(&drive, &inside::schedule());
-    drive_control_speed(&drive);
-    EXPECT_EQ(inside::time_ms() != kMark, k == 0);
+    inside::speed_step();
     EXPECT_EQ(c.headroom_q20 != raw(3.0, 20), k == 0) << k;
     EXPECT_EQ(c.braking_headroom_q20 != kMark, k == 0) << k;
     EXPECT_EQ(c.weakening_q20 != kMark, k == 5) << k;
@@ -187,18 +185,25 @@ TEST_F(SpeedTask, EachPeriodHasItsOwnTask) {
   }
 }
 
-// A millisecond counts as one, and nothing is controlled while nothing turns.
-TEST_F(SpeedTask, AMillisecondHasTenPeriods) {
-  const std::uint32_t before = inside::time_ms();
-  millisecond();
-  millisecond();
-  EXPECT_EQ(inside::time_ms(), before + 2);
+TEST_F(SpeedTask, NothingIsControlledWhileNothingTurns) {
   inside::state() = DRIVE_READY;
   inside::speed_ramp().value = 0;
   inside::target_bpp() = 1000000;
   millisecond();
-  EXPECT_EQ(inside::time_ms(), before + 3);
   EXPECT_EQ(inside::speed_ramp().value, 0);
+}
+
+// The drive's clock, in any state.
+TEST_F(SpeedTask, AMillisecondHasTenPeriods) {
+  for (const drive_state_t state : {DRIVE_READY, DRIVE_RUN, DRIVE_FAULT}) {
+    inside::state() = state;
+    const std::uint32_t before = inside::time_ms();
+    for (int k = 0; k < 20; ++k) {
+      schedule_next(&drive, &inside::schedule());
+      drive_sequence(&drive);
+    }
+    EXPECT_EQ(inside::time_ms(), before + 2) << state;
+  }
 }
 
 // The ramp moves by its step in each millisecond and in STOP to zero; where there is none the reference jumps.

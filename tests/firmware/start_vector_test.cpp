@@ -26,12 +26,12 @@ TEST_F(StartByVector, AVectorBeginsFromRest) {
   for (const bool backward : {false, true}) {
     SetUp();
     inside::target_bpp() = backward ? -1000000 : 1000000;
-    inside::current_controller().d.integral = inside::current_controller().q.integral = 99;
+    inside::current_controller().d.integral_q20 = inside::current_controller().q.integral_q20 = 99;
     inside::seen().angle_bam = 5;
     polarity_watch.open = true;
     if_ramp_phase.begin(&drive);
     EXPECT_EQ(inside::start_found().phase, START_IF_RAMP);
-    EXPECT_EQ(inside::current_controller().d.integral | inside::current_controller().q.integral, 0);
+    EXPECT_EQ(inside::current_controller().d.integral_q20 | inside::current_controller().q.integral_q20, 0);
     EXPECT_EQ(inside::seen().angle_bam, 0u);
     EXPECT_TRUE(inside::loop_is_closed());
     EXPECT_FALSE(polarity_watch.open);
@@ -71,12 +71,12 @@ TEST_F(StartByVector, ASourceThatRestsSeesTheVector) {
     SetUp();
     use_source(source);
     if_ramp_phase.begin(&drive);
-    position_bumpless_transfer(&drive);
+    inside::transfer_position();
     inside::selected() = {bam(0.3), bpp(60.0), 0, 32767};
     flux_observer.observer.angle_bam = inside::observer().angle_bam = bam(2.0);
     estimator_input_t in = {};
     in.model = &inside::model();
-    const estimator_output_t in_use = if_ramp_phase.estimate(&drive, &in);
+    const estimator_output_t in_use = if_ramp_phase.estimate(&drive, &inside::estimate(), &in);
     EXPECT_EQ(inside::seen().angle_bam, bam(0.3)) << source;
     EXPECT_EQ(inside::seen().speed_bpp, bpp(60.0)) << source;
     EXPECT_EQ(inside::observer().angle_bam, bam(2.0)) << "it is not asked";
@@ -92,7 +92,7 @@ TEST_F(StartByVector, TheSourceTakesOverWhereTheVectorIs) {
   use_source(POSITION_FLUX_CONV);
   if_ramp_phase.begin(&drive);
   if_start_t& if_start = if_ramp;
-  inside::current_controller().d.integral = inside::current_controller().q.integral = 99;
+  inside::current_controller().d.integral_q20 = inside::current_controller().q.integral_q20 = 99;
   brake_release_hold.left = 7;
   flux_observer.form.cutoff_q30 = 99;  // it was set to what was seen while nobody used it
   for (int n = 0; inside::state() == DRIVE_START && n < 100000; ++n) {
@@ -105,7 +105,7 @@ TEST_F(StartByVector, TheSourceTakesOverWhereTheVectorIs) {
   EXPECT_EQ(inside::speed_ramp().value, if_ramp_config.speed_bpp);
   EXPECT_EQ(inside::selected().angle_bam, inside::seen().angle_bam);
   EXPECT_EQ(flux_observer.form.cutoff_q30, 0) << "from here on the flux keeps what it knows";
-  EXPECT_EQ(inside::current_controller().d.integral | inside::current_controller().q.integral, 0);
+  EXPECT_EQ(inside::current_controller().d.integral_q20 | inside::current_controller().q.integral_q20, 0);
   EXPECT_EQ(inside::reference_dq_q20().d, 0);
   EXPECT_NEAR(real(inside::reference_dq_q20().q, 20), real(if_start.current_q20, 20) * std::sin(0.4), 0.05);
   EXPECT_EQ(brake_release_hold.left, 0u);

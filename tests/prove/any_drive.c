@@ -15,7 +15,7 @@
 #include "firmware/mode/states.h"
 #include "firmware/scope/scope.h"
 #include "firmware/sources/flux/flux.h"
-#include "firmware/sources/sources.h"
+#include "firmware/sources/observer/observer.h"
 #include "firmware/start/flying/look.h"
 #include "firmware/start/step.h"
 #include "firmware/store/store.h"
@@ -50,7 +50,7 @@ void any_moment(void) {
   if (any_bool()) any_fault();
   drive.state = (drive_state_t)any_up_to(7);
   drive.fault = (drive_fault_t)any_up_to(40);
-  drive.limits = any_i32;
+  drive.control.limits = any_i32;
   drive.time_ms = any_u32;
   drive.heartbeat = any_u16;
   feature_status.loading = any_bool();
@@ -58,23 +58,23 @@ void any_moment(void) {
   starting.phase = any_up_to(15);
   starting.sigma_q8 = any_i32;
   drive.config.rpm_per_bpp_q40 = any_i32;
-  drive.model.torque_per_accel_q24 = any_i32;
+  drive.estimate.model.torque_per_accel_q24 = any_i32;
   drive.samples.count = any_up_to(ESTIMATOR_WINDOWS);
   drive.samples.link_q16 = any_i32;
-  drive.position.selected.angle_bam = any_u32;
-  drive.position.selected.speed_bpp = any_i32;
-  drive.position.selected.load_accel_q8 = any_i32;
-  drive.position.low.angle_bam = any_u32;
-  drive.position.high.angle_bam = any_u32;
-  drive.position.blend.share_q15 = any_i32;
+  drive.estimate.selected.angle_bam = any_u32;
+  drive.estimate.selected.speed_bpp = any_i32;
+  drive.estimate.selected.load_accel_q8 = any_i32;
+  drive.estimate.low.angle_bam = any_u32;
+  drive.estimate.high.angle_bam = any_u32;
+  drive.estimate.blend.share_q15 = any_i32;
   source_deviation_q20 = any_i32;
   flux_observer.load_angle_bam = any_i32;
   flux_observer.machine.psi_q16 = any_i32;
   board.heat_sink_q8 = any_i32;
   known_beside = any_u16;
   drive.control.ramp.value = any_i32;
-  drive.control.measured_q20.d = any_i32;
-  drive.control.measured_q20.q = any_i32;
+  drive.estimate.measured_q20.d = any_i32;
+  drive.estimate.measured_q20.q = any_i32;
   drive.control.references.current_q20.d = any_i32;
   drive.control.references.current_q20.q = any_i32;
   drive.control.command_q16.d = any_i32;

@@ -32,7 +32,7 @@
 #define WINDOW_BETA_MAX_Q20 (387 * AMPERES_Q20)
 #define WINDOW_VOLTS_MAX_Q16 (1340 * VOLTS_Q16)  // two thirds of 2000 V, and the devices' drops
 #define MISMATCH_END_Q30 53687091L               // sensor_match.h
-#define DROP_END_Q16 (7 * VOLTS_Q16)             // four thirds of 5 V, and what intervals add
+#define SHARE_END_Q12 740000000L                 // of the dead time's band: 1.37 times 1024 A, of any reciprocal
 #define VARIANCE_END_Q20 536870912L              // deviation_observer.c
 #define POWER_END_Q23 1073741823L                // of scores
 #define INFORMATION_END_Q21 16777217L            // of a period, deviation_information.h, and a rounding
@@ -47,6 +47,7 @@
 #define FLAG(x) FROM_TO(x, 0, 1)
 #define VECTOR_DQ(v, most) (WITHIN((v).d, most) && WITHIN((v).q, most))
 #define VECTOR_AB(v, most) (WITHIN((v).alpha, most) && WITHIN((v).beta, most))
+#define VECTOR_ABC(v, most) (WITHIN((v).a, most) && WITHIN((v).b, most) && WITHIN((v).c, most))
 #define INVERSE(x) (FROM_TO((x).value, 0, 2147483647) && FROM_TO((x).exponent, 31, 61))
 
 #endif

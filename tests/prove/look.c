@@ -52,7 +52,7 @@ static void ask_left(void) {
   dq_t residual_q20;
   int32_t span_ticks;
   int32_t periods;
-  (void)deviation_observer_take_mean_residual(&s, &residual_q20, &span_ticks, &periods);
+  (void)deviation_take_mean_residual(&s.residual, &residual_q20, &span_ticks, &periods);
 }
 
 void prove_look(void) {

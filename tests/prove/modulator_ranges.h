@@ -28,7 +28,8 @@ modulator_result_t modulator_step(modulator_t* s, const modulator_config_t* c, e
     requires \initialized(&pattern->pulses.at[0 .. 5]) && OF_EDGES(pattern->pulses.at);
     requires \initialized(&pattern->pulses.order[0 .. 5]) && OF_ORDER(pattern->pulses.order);
     requires \initialized(&pattern->windows[0 .. 2]) && OF_WINDOWS(pattern);
-    requires VECTOR_AB(carried->current_q20, CARRIED_MAX_Q20) && FROM_TO(carried->inverse_inductance_q30, 0, Y_END_Q30);
+    requires VECTOR_ABC(carried->shares_q12, SHARE_END_Q12);
+    requires FROM_TO(carried->inverse_inductance_q30, 0, Y_END_Q30);
     requires FROM_TO(carried->link_q16, 0, VOLTAGE_MAX_Q16);
     assigns pattern->windows[0 .. 2], pattern->window_count, sent[0 .. 5]
             \from *c, *sampling, *carried, *pattern;

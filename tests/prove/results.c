@@ -42,11 +42,11 @@ static void any_map(map_t* m) {
 
 static void any_spin(spin_t* s) {
   for (uint16_t k = 0; k < SPIN_STATIONS; k++) {
-    const spin_sums_t station = {any_i64, any_i64, any_i64, any_i64, any_i32};
+    const spin_sums_t station = {any_i64, any_i64, any_i64, any_i64, any_i32, any_i32};
     s->station[k] = station;
   }
   for (uint16_t k = 0; k < SPIN_RAMPS; k++) {
-    const spin_sums_t ramp = {any_i64, any_i64, any_i64, any_i64, any_i32};
+    const spin_sums_t ramp = {any_i64, any_i64, any_i64, any_i64, any_i32, any_i32};
     s->ramp[k] = ramp;
   }
 }

@@ -29,7 +29,10 @@ static void send(const svpwm_pulses_t* pulses) {
     pattern.windows[k] = w;
   }
   const int32_t link_q16 = any_from(0, VOLTAGE_MAX_Q16);
-  const svpwm_carried_t carried = {any_vector(CARRIED_MAX_Q20), any_from(0, Y_END_Q30), link_q16};
+  const svpwm_carried_t carried = {{any_from(-SHARE_END_Q12, SHARE_END_Q12), any_from(-SHARE_END_Q12, SHARE_END_Q12),
+                                    any_from(-SHARE_END_Q12, SHARE_END_Q12)},
+                                   any_from(0, Y_END_Q30),
+                                   link_q16};
   svpwm_compensate_edges(&dead_time, &config.sampling, &carried, &pattern, sent);
   (void)svpwm_mean_q16(&pattern.pulses, link_q16);
   const int16_t middles[SVPWM_WINDOWS] = {any_ticks(0, SVPWM_PERIOD_TICKS), any_ticks(0, SVPWM_PERIOD_TICKS),
@@ -64,7 +67,7 @@ void prove_svpwm(void) {
   modulator_reset(&state);
   while (any_bool()) {
     svpwm_pulses_t pulses;
-    (void)dead_time_drop_q16(&dead_time, any_vector(CURRENT_MAX_Q20));
+    (void)dead_time_drop_q16(&dead_time, any_vector(CARRIED_MAX_Q20));
     (void)modulator_step(&state, &config, (excitation_t)(any_u16 % 6u), any_vector(ASKED_MAX_Q16),
                          any_from(0, VOLTAGE_MAX_Q16), &pulses);
   }

@@ -142,6 +142,17 @@ def test_all_parameters_at_once_are_caught(tmp_path: Path) -> None:
     assert [(f.path, f.line) for f in interrupt.check(tmp_path)] == [("firmware/drive/control_interrupt.c", 2)]
 
 
+@pytest.mark.parametrize("inside", [False, True])
+@pytest.mark.parametrize(
+    "made", ["static const parameters_t* const seen = &parameters;", "parameters_t* seen = (void*)&parameters;"]
+)
+def test_a_pointer_to_all_parameters_that_stays_is_caught(tmp_path: Path, made: str, inside: bool) -> None:
+    begin = "void drive_control_interrupt(void) {\n"
+    text = f"{begin}  {made}\n" if inside else f"{made}\n{begin}"
+    plant(tmp_path, "firmware/drive/control_interrupt.c", f"{text}  use(seen->mtpa);\n}}\n")
+    assert {f.path for f in interrupt.check(tmp_path)} == {"firmware/drive/control_interrupt.c"}
+
+
 def test_what_the_interrupts_run_is_found_in_the_drive_itself() -> None:
     """Through calls, the table of phases, that of sources and their hooks, and down from each of both interrupts."""
     reached = set(interrupt.Program(ROOT).reached(interrupt.INTERRUPTS).values())
@@ -178,34 +189,35 @@ PERIOD = {
         "  d->control.references.current_q20.q = 0;",
         "  drive_control_t* const c = &d->control; c->references.closed = true;",
         "  dq_t* const r = &d->control.references.current_q20;",
-        "  drive.position.selected.angle_bam += half;",
+        "  drive.estimate.selected.angle_bam += half;",
         "  d->samples.windows[0].span_ticks = 1;",
         "  d->schedule.slot++;",
         "  d->flags.spins = true;",
-        "  d->model = d->config.nameplate;",
-        "  frame_turn(&d->control.measured_q20, &v);",
-        "  frame_turn(d->position.frames, &v);",
-        "  unknown(&d->position.observer);",
+        "  d->estimate.model = d->config.nameplate;",
+        "  frame_turn(&d->estimate.measured_q20, &v);",
+        "  frame_turn(d->estimate.frames, &v);",
+        "  unknown(&d->estimate.observer);",
         "  clear(&d->control, sizeof d->control);",
         "  clear(d, sizeof *d);",
         "  clear(&drive, sizeof drive);",
-        "  d->position = other;",
-        "  d->supervision.overrun++;",
+        "  d->estimate = other;",
+        "  d->modulation.overrun++;",
         "  drive_supervision_t* const v = &d->supervision; v->judged_at = d->heartbeat;",
+        "  drive_estimate_t* const e = &d->estimate; e->trim.mismatch_q30 = 0;",
         "  clear(&d->supervision, sizeof d->supervision);",
         "  d->request.start = true;",
         "  drive_request_t* const r = &d->request; r->speed = false;",
-        "  d->limits |= LIMIT_VOLTAGE;",
+        "  d->control.limits |= LIMIT_VOLTAGE;",
         "  d->fault = FAULT_NONE;",
         "  d->heartbeat++;",
         "  d->source = &avv_source;",
         "  d->control.ramp.value = 0;",
         "  d->control.speed_ready = true;",
-        "  machine_model_t* const m = &d->model; m->yd_q30 = 0;",
+        "  machine_model_t* const m = &d->estimate.model; m->yd_q30 = 0;",
         "  drive.control = other;",
         "  drive_control_t* const c = &d->control;  *c = other;",
         "  *d = other;",
-        "  estimator_frame_t* const f = d->position.frames;",
+        "  estimator_frame_t* const f = d->estimate.frames;",
     ],
 )
 def test_member_of_a_period_that_somebody_else_writes_is_caught(tmp_path: Path, line: str) -> None:
@@ -220,11 +232,11 @@ def test_member_of_a_period_that_somebody_else_writes_is_caught(tmp_path: Path, 
     [
         "  const int32_t q = d->control.references.current_q20.q;",
         "  const dq_t* const r = &d->control.references.current_q20;",
-        "  if (d->schedule.slot == SLOT_LOOK) d->position.seen_here = d->position.selected;",
-        "  frame_turn(&v, &d->control.measured_q20);",
+        "  if (d->schedule.slot == SLOT_LOOK) d->estimate.seen_here = d->estimate.selected;",
+        "  frame_turn(&v, &d->estimate.measured_q20);",
         "  schedule_next(d, &d->schedule);  // whose it is to write",
-        "  d->source->follow(d, &d->control.measured_q20);",
-        "  use(d->control.measured_q20, sizeof(d->model));",
+        "  d->source->follow(d, &d->estimate.measured_q20);",
+        "  use(d->estimate.measured_q20, sizeof(d->estimate.model));",
         "  const drive_control_t* const c = &d->control;",
         "  const int32_t all = 2 * d->heartbeat;",
         "  clear(&spare, sizeof d->control);",
@@ -269,14 +281,17 @@ def test_member_without_a_writer_is_caught(tmp_path: Path) -> None:
 
 def test_every_member_of_the_drive_is_looked_at() -> None:
     seen = writers.members(ROOT)
-    assert {"state", "sliced", "source", "config", "request.speed_rpm_q16", "flags.over", "position.frames"} <= set(
-        seen
-    )
+    assert {
+        "state",
+        "modulation.sliced",
+        "source",
+        "config",
+        "request.speed_rpm_q16",
+        "flags.over",
+        "estimate.frames",
+    } <= set(seen)
     groups = {name for name in writers.GROUPS.values() if any(member.startswith(f"{name}.") for member in seen)}
-    assert groups == set(writers.GROUPS.values()) - {
-        "model",
-        "trim",
-    }  # which lie below the drive, each a row of its own
+    assert groups == set(writers.GROUPS.values())
 
 
 def test_each_writer_writes() -> None:

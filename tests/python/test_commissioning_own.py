@@ -46,8 +46,7 @@ def file_of(place, machine):
 def test_every_value_is_found(tmp_path, machine):
     """From a nameplate that is off as in `bench`, within what the link's measurement, 1 % high, leaves.
 
-    The first one's flux is 2.9 % too large, with a standard deviation of 0.5 % (seeds 1 to 5): it spins with 1 % of its
-    rated current, and between the two speeds what the edges lose of 375 V changes by 0.45 V, of 25 V of back-EMF.
+    The first one spins with 1 % of its rated current: without a current along d its flux would be 3 % too large.
     """
     native = pytest.importorskip("stillspin._core", reason="the native module is not built")
     motor, out = file_of(tmp_path, machine), tmp_path / "found.toml"
@@ -63,7 +62,7 @@ def test_every_value_is_found(tmp_path, machine):
         ("stator_resistance", ohms, "resistance", 0.03),
         ("inductance_d", 1e3 * along, "inductance_d", 0.03),
         ("inductance_q", 1e3 * across, "inductance_q", 0.03),
-        ("magnet_flux", flux, "magnet_flux", 0.045 if machine is TRACTION else 0.03),
+        ("magnet_flux", flux, "magnet_flux", 0.02 if machine is TRACTION else 0.03),
         ("inertia", inertia, "inertia", 0.05),
     ):
         assert found[name] == pytest.approx(nominal * (1.0 + error[of]), rel=within), name

@@ -22,7 +22,6 @@ DRIVE = "drive"
 PROGRAMS = ("firmware/flash_kernel/", "firmware/lamp/")  # of their own
 VALUES = "firmware/dictionary/parameters.h"
 SPEAKS = {"console": re.compile(r"/(sub_)?commands\w*\.[ch]$"), "link": re.compile(r"/requests\w*\.[ch]$")}
-ASKED = {(DRIVE, "sources/flux")}  # drive/position.c asks whether there is one
 LOOKED_UP = re.compile(r"\bposition_sources\[(POSITION_\w+)\]")
 
 
@@ -82,11 +81,7 @@ def missing(root: Path) -> dict[tuple[str, str], str]:
     features = compose.all_features(root)
     needs = {feature.name: feature.needs for feature in features}
     reached = {name: closure(name, needs) for name in needs}
-    return {
-        pair: where
-        for pair, where in uses(root, features).items()
-        if pair[1] not in reached[pair[0]] and pair not in ASKED
-    }
+    return {pair: where for pair, where in uses(root, features).items() if pair[1] not in reached[pair[0]]}
 
 
 @pytest.fixture

@@ -57,7 +57,8 @@ TEST(DeadTime, TheMotorSeesTheWantedEdges) {
   for (int n = 0; n < 4000; ++n) {
     const svpwm_pulses_t wanted = some_pulses(random);
     const Vector mean = random.direction(random.between(0.0, 12.0));
-    const svpwm_pulses_t command = sent(c, wanted, {raw_ab(mean, 20), raw(y, 30), raw(kLink, 16)}).command;
+    const svpwm_pulses_t command =
+        sent(c, wanted, {dead_time_shares_q12(&c, raw_ab(mean, 20)), raw(y, 30), raw(kLink, 16)}).command;
     for (int leg = 0; leg < 3; ++leg) {
       for (const bool rising : {true, false}) {
         const std::int16_t edge = wanted.at[rising ? leg : SVPWM_LEGS + leg];
@@ -86,7 +87,8 @@ TEST(DeadTime, InTheBandTheShiftIsLinear) {
   const dead_time_config_t c = config();
   const svpwm_pulses_t wanted = ordered({{2000, 2000, 2000, 7000, 7000, 7000}, 0});  // 000 and 111: no ripple
   for (double i = -0.2; i <= 0.2; i += 0.02) {
-    const svpwm_pulses_t command = sent(c, wanted, {raw_ab({i, 0.0}, 20), raw(0.016, 30), raw(kLink, 16)}).command;
+    const svpwm_pulses_t command =
+        sent(c, wanted, {dead_time_shares_q12(&c, raw_ab({i, 0.0}, 20)), raw(0.016, 30), raw(kLink, 16)}).command;
     const double middle = 0.5 * (kDeadTicks + kTurnOn + kTurnOff);
     const double half = 0.5 * (kDeadTicks + kTurnOn - kTurnOff);
     EXPECT_NEAR(wanted.at[0] - command.at[0], middle + half * i / 0.2, 0.51) << i;
@@ -104,9 +106,9 @@ TEST(DeadTime, DropOpposesEachPhaseCurrent) {
     for (std::size_t k = 0; k < 3; ++k) drop[k] = 0.95 * std::max(-1.0, std::min(1.0, phases[k] / 0.2));
     const Vector expected = {(2.0 * drop[0] - drop[1] - drop[2]) / 3.0, (drop[1] - drop[2]) / std::sqrt(3.0)};
     const Vector got = real(dead_time_drop_q16(&c, raw_ab(i, 20)), 16);
-    // signs have 15 bits and reach 32767 / 32768: 3e-5 of 0.95 V in three phases
-    ASSERT_NEAR(got.x, expected.x, 1.2e-4);
-    ASSERT_NEAR(got.y, expected.y, 1.2e-4);
+    // Shares of the band have 12 bits, are rounded down and reach 4095 / 4096: 4/3 and 2/sqrt(3) of that of 0.95 V.
+    ASSERT_NEAR(got.x, expected.x, 3.2e-4);
+    ASSERT_NEAR(got.y, expected.y, 2.9e-4);
   }
 }
 
@@ -125,7 +127,7 @@ TEST(DeadTime, InAWideBandEveryEdgeIsShiftedByItsCurrent) {
     pattern.pulses = some_pulses(random);
     const Vector mean = random.direction(random.between(0.0, 3.0));
     // no ripple: the current of an edge is its leg's mean
-    const svpwm_carried_t carried = {raw_ab(mean, 20), 0, raw(kLink, 16)};
+    const svpwm_carried_t carried = {dead_time_shares_q12(&c, raw_ab(mean, 20)), 0, raw(kLink, 16)};
     const svpwm_pulses_t command = send(c, sampling, carried, &pattern);
     for (std::uint16_t edge = 0; edge < SVPWM_EDGES; ++edge) {
       const double blocking = (edge < SVPWM_LEGS ? 1.0 : -1.0) * phase(mean, edge % SVPWM_LEGS);

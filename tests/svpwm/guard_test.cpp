@@ -40,7 +40,8 @@ ab_t phases(double a, double b) {
 }
 
 Sent sent_at(const svpwm_pulses_t& wanted, ab_t current) {
-  return sent(dead_time(), wanted, {current, 17179869L, 300L * 65536L});  // 0.016 A per V
+  const dead_time_config_t c = dead_time();
+  return sent(c, wanted, {dead_time_shares_q12(&c, current), 17179869L, 300L * 65536L});  // 0.016 A per V
 }
 
 svpwm_pattern_t guarded(const sampling_config_t& s, const svpwm_pulses_t& wanted, const Arrivals& arrivals) {
@@ -101,7 +102,7 @@ TEST(Guard, WhateverTheSignTheSamplesAreInsideTheWindow) {
 void expect_sent(const svpwm_pulses_t& wanted, ab_t current, const Sent& pieces, const svpwm_pattern_t& found) {
   const dead_time_config_t c = dead_time();
   const sampling_config_t s = sampling();
-  const svpwm_carried_t carried = {current, 17179869L, 300L * 65536L};
+  const svpwm_carried_t carried = {dead_time_shares_q12(&c, current), 17179869L, 300L * 65536L};
   svpwm_pattern_t p = {};
   p.pulses = wanted;
   const svpwm_pulses_t command = send(c, s, carried, &p);

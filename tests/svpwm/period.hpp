@@ -84,8 +84,8 @@ struct Sent {
 
 inline Sent sent(const dead_time_config_t& c, const svpwm_pulses_t& wanted, const svpwm_carried_t& carried) {
   svpwm_ripple_legs_t legs;
-  svpwm_ripple_walk_t walk = svpwm_ripple_walk(&wanted, frame_inverse_clarke(carried.current_q20),
-                                               carried.inverse_inductance_q30, carried.link_q16, c.per_band_q24, &legs);
+  svpwm_ripple_walk_t walk = svpwm_ripple_walk(&wanted, carried.shares_q12, carried.inverse_inductance_q30,
+                                               carried.link_q16, c.per_band_q24, &legs);
   Sent s = {};
   for (const std::uint16_t edge : wanted.order) {
     const std::int32_t tick = wanted.at[edge];

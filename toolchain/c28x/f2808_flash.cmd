@@ -72,7 +72,7 @@ SECTIONS
                 libstillspin_firmware.a<hysteresis.*>(.text:_hysteresis_slice)
                 libstillspin_estimators.a<deviation_observer.*>(.text:_deviation_observer_step)
                 libstillspin_estimators.a<regression.*>(.text:_regression_evaluate)
-                libstillspin_estimators.a<deviation.*>(.text:_deviation_frames, .text:_deviation_model,
+                libstillspin_estimators.a<deviation.*>(.text:_deviation_frames, .text:_deviation_model, .text:_deviation_see,
                                                        .text:_deviation_changes)
                 libstillspin_qmath.a<qsum.*>(.text)
               } LOAD = APP, RUN = RAM_CODE, PAGE = 0,

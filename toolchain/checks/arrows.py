@@ -44,8 +44,6 @@ FIRMWARE = (
     ("sources/encoder",),
     ("editions",),
 )
-# A header that lies beside the folders: the face of the lowest of them, whose functions it declares.
-FACES = {"firmware/sources/sources.h": "firmware/sources/observer"}
 LEFT = "toolchain/arrows_left.txt"
 
 # What each part may include besides itself: a part or a single file. The longest prefix that fits a path decides which
@@ -112,8 +110,6 @@ class Arrow:
 
 def part_of(path: str) -> str | None:
     """The part of the house that ``path`` (relative, with /) is in, or None."""
-    if path in FACES:
-        return FACES[path]
     fitting = (part for part in MAY_INCLUDE if path.startswith(part + "/"))
     return max(fitting, key=len, default=None)
 

@@ -24,6 +24,9 @@ POINTERS = "toolchain/f2808/indirect_calls.txt"
 
 _TABLE = re.compile(r"^(static\s)?[A-Za-z_][\w \t*]*?[ *](\w+)(?:\[[^\]\n]*\])*\s*=\s*\{", re.MULTILINE)
 _LOCAL_TABLE = re.compile(r"^[ \t]+static\s[\w \t*]*?[ *](\w+)(?:\[[^\]\n]*\])*\s*=\s*\{", re.MULTILINE)
+_POINTER = re.compile(
+    r"^[ \t]*(static\s)?[A-Za-z_][\w \t*]*?[ *](\w+)\s*=\s*((?:\([^()]*\)\s*)?&[^;{}]*);", re.MULTILINE
+)
 _MACRO = re.compile(r"(\w+)(?:\([^)]*\))?\s(.*)")
 _READ = re.compile(r"(?<![\w.>])parameters\b(?:\s*\.\s*(\w+))?")
 
@@ -81,6 +84,10 @@ class Program:
         for match in _LOCAL_TABLE.finditer(text):
             line = text.count("\n", 0, match.start()) + 1
             self._own[source, match[1]].append(Piece(source, line, _block(text, match.end() - 1)))
+        for match in _POINTER.finditer(text):
+            if match[1] or not match[0][0].isspace():  # one that outlives its function
+                line = text.count("\n", 0, match.start(3)) + 1
+                self._own[source, match[2]].append(Piece(source, line, match[3]))
         for directive in directives(text):
             if directive.name == "define" and (macro := _MACRO.match(directive.rest)):
                 piece = Piece(source, directive.line, macro[2])

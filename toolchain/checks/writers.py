@@ -17,38 +17,37 @@ from checks.calls import code
 # The type of a group of the drive: who has a pointer of it has the group.
 GROUPS = {
     "drive_control_t": "control",
-    "drive_position_t": "position",
+    "drive_estimate_t": "estimate",
     "drive_samples_t": "samples",
     "drive_modulation_t": "modulation",
     "schedule_t": "schedule",
     "state_flags_t": "flags",
     "drive_supervision_t": "supervision",
     "drive_request_t": "request",
-    "machine_model_t": "model",
-    "slopes_trim_t": "trim",
 }
 DRIVE = "firmware/mode/mode.h"  # says what the drive has
 _STATES = ("firmware/start/", "firmware/commissioning/")  # START and COMMISSION
 _FRESH = "firmware/drive/reset.c"  # the state after power-on, and the machine of new parameters
 _SLICED = "firmware/hysteresis/hysteresis.c"  # in the place of windows
+_SLICES = "->samples"  # its hook (interfaces/phase_control.h)
 # Each member by its path in the drive: the files and folders that write it.
 WRITERS: dict[str, tuple[str, ...]] = {
     # Of a period, in the order of the steps.
     "schedule": ("firmware/drive/schedule.c",),
-    "samples": ("firmware/drive/sampling.", _SLICED),
-    "control.measured_q20": ("firmware/drive/position.c", _SLICED),
-    "position.selected": ("firmware/drive/position.c",),
-    "position.seen": ("firmware/drive/position.h",),
-    "position.seen_q20": ("firmware/drive/position.c",),
-    "position.frames": ("firmware/drive/position.c",),
-    "position.torque_accel_q8": ("firmware/drive/position.c",),
-    "supervision.missing": ("firmware/drive/sampling.c", _SLICED),
+    "samples": ("firmware/drive/sampling.", _SLICED, _SLICES),
+    "estimate.measured_q20": ("firmware/drive/position.c", _SLICES),
+    "estimate.selected": ("firmware/drive/position.c",),
+    "estimate.seen": ("firmware/drive/position.h",),
+    "estimate.seen_q20": ("firmware/drive/position.c",),
+    "estimate.frames": ("firmware/drive/position.c",),
+    "estimate.torque_accel_q8": ("firmware/drive/position.c",),
+    "supervision.missing": ("firmware/drive/sampling.c", _SLICES),
     "supervision.diverged_periods": ("firmware/drive/protection.c",),
     "supervision.judged_at": ("firmware/drive/protection.c",),
     "supervision.judged_bam": ("firmware/drive/protection.c",),
     "supervision.synchronism": ("firmware/drive/protection.c",),
     "supervision.stopping_periods": ("firmware/drive/sequence.c",),
-    "supervision.overrun": ("firmware/drive/modulation.c",),
+    "modulation.overrun": ("firmware/drive/modulation.c", "firmware/start/start.c"),
     "state": ("firmware/mode/mode.c",),
     "fault": ("firmware/mode/mode.c", "firmware/drive/sequence.c"),  # raised; acknowledged
     "periods": ("firmware/drive/sequence.c", "firmware/mode/mode.c"),
@@ -80,20 +79,23 @@ WRITERS: dict[str, tuple[str, ...]] = {
     "control.references.closed": (*_STATES, "firmware/mode/mode.c"),
     "control.command_rpm_q16": ("firmware/drive/sequence.c", "firmware/mode/mode.c"),
     "control.target_bpp": ("firmware/drive/sequence.c", "firmware/mode/mode.c", "firmware/commissioning/spin.c"),
+    "control.spin_d_q20": ("firmware/commissioning/spin.c",),
     "control.weakening_q20": ("firmware/drive/speed.c",),
     "control.headroom_q20": ("firmware/drive/speed.c",),
     "control.braking_headroom_q20": ("firmware/drive/speed.c",),
     "control.per_torque_constant": ("firmware/drive/speed.c", _FRESH),
-    "time_ms": ("firmware/drive/speed.c",),
-    "limits": ("firmware/drive/speed.c", "firmware/drive/modulation.c"),  # of current and speed; of voltage and time
+    "time_ms": ("firmware/drive/sequence.c",),
+    "control.limits": (
+        "firmware/drive/speed.c",  # of current and speed
+        "firmware/drive/modulation.c",  # of voltage and time
+    ),
     "control.command_q16": ("firmware/drive/current.c",),
-    "modulation": ("firmware/drive/modulation.c", "firmware/start/start.c", _FRESH),
     "modulation.state": ("firmware/drive/modulation.c", "firmware/start/start.c"),
     "modulation.patterns": ("firmware/drive/modulation.c",),
     "modulation.sampled": ("firmware/drive/modulation.c",),
     "modulation.running": ("firmware/drive/modulation.c",),
     "modulation.command_q16": ("firmware/drive/modulation.c",),
-    "sliced": (_SLICED,),
+    "modulation.sliced": (_SLICED,),
     # Controllers: their step, and who lets them begin.
     "control.speed": (
         "firmware/drive/speed.c",
@@ -111,25 +113,25 @@ WRITERS: dict[str, tuple[str, ...]] = {
         "firmware/start/if_start/",
     ),
     # Of more than one: who learns or carries something on.
-    "model": (
+    "estimate.model": (
         "firmware/drive/position.c",  # to the operating point
         "firmware/sources/observer/learning.c",
         "firmware/drive/inertia.c",
         *_STATES,  # begin with the nameplate, and measure
         _FRESH,
     ),
-    "trim": (
+    "estimate.trim": (
         "firmware/drive/sequence.c",  # the calibration
         "firmware/sources/observer/learning.c",
         "firmware/start/start.c",
         _FRESH,
     ),
-    "position.low": ("firmware/sources/", "firmware/drive/position.c"),
-    "position.high": ("firmware/sources/", "firmware/drive/position.c"),
-    "position.blend": ("firmware/sources/", "firmware/drive/position.c"),
-    "position.is_near": ("firmware/sources/",),
-    "position.avv": ("firmware/sources/", "firmware/drive/position.c", "firmware/commissioning/hold.c"),
-    "position.observer": (
+    "estimate.low": ("firmware/sources/", "firmware/drive/position.c"),
+    "estimate.high": ("firmware/sources/", "firmware/drive/position.c"),
+    "estimate.blend": ("firmware/sources/", "firmware/drive/position.c"),
+    "estimate.is_near": ("firmware/sources/",),
+    "estimate.avv": ("firmware/sources/", "firmware/drive/position.c", "firmware/commissioning/hold.c"),
+    "estimate.observer": (
         "firmware/sources/",
         "firmware/drive/position.c",
         "firmware/drive/brake_release_hold.c",  # a shaft that stands

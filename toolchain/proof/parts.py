@@ -1,12 +1,12 @@
 """The parts of the drive's C that Frama-C reads together: files, options, and what is taken for granted in them."""
 
-from proof.part import LINK_RANGES, QMATH, RANGES, SLICES, eva, of_link, of_qmath, with_contract, wp
+from proof.part import LINK_RANGES, QMATH, RANGES, eva, of_link, of_qmath, with_contract, wp
 
 CONTRACTS = "tests/prove/qmath_contracts.h"
 SHIFT_RANGES, BITS, FLOOR = "tests/prove/shift_ranges.h", "tests/prove/bits.h", "tests/prove/floor.h"
 OVER, LEFT_SHIFT, REST = (f"tests/prove/{name}.h" for name in ("over_contract", "left_shift", "rest"))
 LAYOUT_RANGES = "tests/prove/svpwm_ranges.h"
-ROTATION_RANGES, DROP_RANGES = "tests/prove/rotation_ranges.h", "tests/prove/drop_ranges.h"
+ROTATION_RANGES = "tests/prove/rotation_ranges.h"
 CONTROL_RANGES, MODULATOR_RANGES = "tests/prove/control_ranges.h", "tests/prove/modulator_ranges.h"
 ESTIMATORS_RANGES, START_RANGES = "tests/prove/estimators_ranges.h", "tests/prove/start_ranges.h"
 LOOK_RANGES, RESULTS_RANGES = "tests/prove/look_ranges.h", "tests/prove/results_ranges.h"
@@ -17,7 +17,6 @@ FLOORS = (CONTROL_RANGES, MODULATOR_RANGES, ESTIMATORS_RANGES, START_RANGES)
 OF_QMATH = "q_clz32,q_reciprocal_q31,q_div,q_invert,q_sqrt64,q_sqrt32,q_hypot,q_atan2,q_sincos,q_limit"
 OF_QMATH += ",q_follow,q_follow_near,q_follow_halves,q_follow_remainder,q_gather,q_mix,q_mix_sat,q_square,q_square_sat"
 OF_LAYOUTS = "svpwm_alternating_fits,svpwm_alternating,svpwm_extended,svpwm_cheapest_pair,svpwm_centred,svpwm_long_zero"
-OF_DROPS = "dead_time_drop_q16"
 OF_BLOCKS = "crc16,cobs_encode,cobs_decode"
 OF_WRITING = (
     "put_text,put_unsigned,put_fixed,put_spaces_to,put_message,put_packed,packed_is_empty,packed_reader,packed_next"
@@ -168,10 +167,9 @@ PARTS = (
         "svpwm",
         SVPWM,
         READER,
-        f"{OF_QMATH},{OF_LAYOUTS},{OF_DROPS}",
-        headers=(DROP_RANGES, LAYOUT_RANGES, MODULATOR_RANGES),
+        f"{OF_QMATH},{OF_LAYOUTS}",
+        headers=(LAYOUT_RANGES, MODULATOR_RANGES),
     ),
-    eva("drops", ("tests/prove/drops.c", QMATH), SLICES, OF_QMATH, headers=(DROP_RANGES,)),
     *(
         wp(
             name,
@@ -190,8 +188,8 @@ PARTS = (
         "edges",
         SVPWM,
         ("-eva-min-loop-unroll", "6", "-eva-slevel", "60"),
-        f"{OF_QMATH},{OF_DROPS}",
-        headers=(DROP_RANGES, MODULATOR_RANGES),
+        OF_QMATH,
+        headers=(MODULATOR_RANGES,),
     ),
     eva(
         "control",
@@ -236,8 +234,8 @@ PARTS = (
         "interrupt",
         INTERRUPT,
         (*WHOLE, "-eva-slevel-function", "follow_link:20,drive_read_samples:20"),
-        f"{OF_QMATH},turned,{OF_DROPS},{with_contract(*FLOORS)}",
-        headers=(ROTATION_RANGES, DROP_RANGES, *FLOORS),
+        f"{OF_QMATH},turned,{with_contract(*FLOORS)}",
+        headers=(ROTATION_RANGES, *FLOORS),
     ),
     # A constant that does not fit its word would be another number, silently.
     eva("configuration", CONFIGURATION, (*READER, "-warn-signed-downcast"), f"{OF_QMATH},q_sat64,q_sat_bits"),

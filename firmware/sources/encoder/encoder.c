@@ -9,7 +9,7 @@
 #include "firmware/base/clear.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/sources/flux/flux.h"
-#include "firmware/sources/sources.h"
+#include "firmware/sources/observer/observer.h"
 #include "hal/hal_encoder.h"
 
 encoder_t encoder;
@@ -49,7 +49,7 @@ static uint32_t angle_now(void) { return hal_encoder_count() * encoder.per_count
 static void encoder_begin(const drive_t* d, bool keeps) {
   flux_source_begin(d, keeps);
   if (keeps) return;
-  const estimator_output_t* const now = &d->position.selected;
+  const estimator_output_t* const now = &d->estimate.selected;
   encoder.offset_bam = now->angle_bam - angle_now();
   encoder.aligned_bam = now->angle_bam;
   tracking_observer_preset(&encoder.observer, now->angle_bam, now->speed_bpp, 0);
@@ -57,12 +57,12 @@ static void encoder_begin(const drive_t* d, bool keeps) {
 
 static bool is_reversed(const drive_t* d) {
   const uint32_t encoder_bam = encoder.observer.angle_bam - encoder.aligned_bam;
-  const uint32_t windows_bam = d->position.high.angle_bam - encoder.aligned_bam;
+  const uint32_t windows_bam = d->estimate.high.angle_bam - encoder.aligned_bam;
   return q_abs_sat(angle_diff_bam(windows_bam + encoder_bam, 0)) <
          q_abs_sat(angle_diff_bam(windows_bam, encoder_bam)) / 2;
 }
 
-static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
+static estimator_output_t source_encoder(const drive_t* d, drive_estimate_t* e, estimator_input_t* in) {
   in->frames = 0;
   tracking_observer_t* const o = &encoder.observer;
   tracking_observer_predict(o, in->torque_accel_q8);
@@ -70,12 +70,12 @@ static estimator_output_t source_encoder(drive_t* d, estimator_input_t* in) {
                             d->config.avv.bandwidth_long_q30);
   estimator_output_t out = {o->angle_bam, o->speed_bpp, o->load_accel_q8, 32767};
   if (encoder.beside_flux) {
-    d->position.high = flux_source_look_on(d, in, &out);
+    e->high = flux_source_look_on(d, in, &out);
   } else {
-    source_step_avv(d, in);
+    source_step_avv(d, e, in);
   }
-  if (!encoder.beside_avv) d->position.high.quality_q15 = 0;  // it looks on, and its angle is no reason for a fault
-  d->position.low = out;
+  if (!encoder.beside_avv) e->high.quality_q15 = 0;  // it looks on, and its angle is no reason for a fault
+  e->low = out;
   // Behind the observer: turning the frame is no motion of the shaft.
   out.angle_bam += encoder.trim_bam;
   (void)zvv_deviation_q20(in, out.angle_bam, out.speed_bpp, &source_deviation_q20);

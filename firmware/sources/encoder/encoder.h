@@ -20,6 +20,9 @@ typedef struct {
 extern encoder_t encoder;
 extern const config_part_t encoder_part;
 
+/// The encoder, with a flux or AVV that looks on.
+extern const position_source_t encoder_source;
+
 /// As after power-on.
 void encoder_reset(void);
 

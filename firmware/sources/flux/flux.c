@@ -7,7 +7,7 @@
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
 #include "firmware/interfaces/isr_cycles.h"
-#include "firmware/sources/sources.h"
+#include "firmware/sources/observer/observer.h"
 #include "hal/hal_profile.h"
 #include "hal/qmath/qcall.h"
 #include "svpwm/ripple.h"
@@ -85,11 +85,11 @@ const config_part_t flux_part = {make, take, NULL};
 
 // The current at the end of the period: what was measured in the frame in use, that frame moved on.
 static flux_period_t period_of(const drive_t* d, bool is_full) {
-  const uint32_t end_bam = d->position.selected.angle_bam + (uint32_t)d->position.selected.speed_bpp;
+  const uint32_t end_bam = d->estimate.selected.angle_bam + (uint32_t)d->estimate.selected.speed_bpp;
   flux_period_t p;
   p.is_full = is_full;
-  p.current_q20 = frame_fixed(d->control.measured_q20, end_bam);
-  p.measured_q20 = d->control.measured_q20;
+  p.current_q20 = frame_fixed(d->estimate.measured_q20, end_bam);
+  p.measured_q20 = d->estimate.measured_q20;
   p.reference_q20 = d->control.references.current_q20;
   if (d->flags.open_loop) {
     p.measured_q20 = position_seen(d, p.measured_q20);
@@ -106,48 +106,46 @@ void flux_source_begin(const drive_t* d, bool keeps) {
   if (keeps) {
     flux_observer_keep(&flux_observer);
   } else {
-    flux_observer_reset(&flux_observer, &flux_config, &d->model);
+    flux_observer_reset(&flux_observer, &flux_config, &d->estimate.model);
   }
 }
 
-static estimator_output_t step(drive_t* d, const estimator_input_t* in, bool is_full) {
+static estimator_output_t step(const drive_t* d, const estimator_input_t* in, bool is_full) {
   const flux_period_t p = period_of(d, is_full);
   return flux_observer_step(&flux_observer, &flux_config, in, &p);
 }
 
 // The observer goes along, so that it is right when it is wanted again.
-static void carry_observer(drive_t* d, const estimator_output_t* now) {
-  deviation_observer_t* const o = &d->position.observer;
+static void carry_observer(deviation_observer_t* o, const estimator_output_t* now) {
   o->angle_bam = now->angle_bam;
   o->speed_bpp = now->speed_bpp;
   o->load_accel_q8 = now->load_accel_q8;
 }
 
-estimator_output_t flux_source_alone(drive_t* d, const estimator_input_t* in) {
-  drive_position_t* const p = &d->position;
-  p->high = step(d, in, false);
-  p->low = p->high;
-  carry_observer(d, &p->high);
-  return blend_step(&p->blend, &d->config.blend, &p->low, &p->high);
+estimator_output_t flux_source_alone(const drive_t* d, drive_estimate_t* e, const estimator_input_t* in) {
+  e->high = step(d, in, false);
+  e->low = e->high;
+  carry_observer(&e->observer, &e->high);
+  return blend_step(&e->blend, &d->config.blend, &e->low, &e->high);
 }
 
 void flux_source_follow(const drive_t* d, const estimator_output_t* now) {
-  flux_observer_preset(&flux_observer, now, d->control.measured_q20);
+  flux_observer_preset(&flux_observer, now, d->estimate.measured_q20);
 }
 
-estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, const estimator_output_t* low) {
-  drive_position_t* const p = &d->position;
+estimator_output_t flux_source_beside(const drive_t* d, drive_estimate_t* e, const estimator_input_t* in,
+                                      const estimator_output_t* low) {
   hal_profile_step(CYCLES_ESTIMATE_FLUX);
-  p->high = *low;
-  if (blend_is_low(&p->blend)) {
+  e->high = *low;
+  if (blend_is_low(&e->blend)) {
     flux_source_follow(d, low);
   } else {
-    p->high = step(d, in, in->window_count > 0u);
+    e->high = step(d, in, in->window_count > 0u);
   }
-  return blend_step(&p->blend, &d->config.blend, low, &p->high);
+  return blend_step(&e->blend, &d->config.blend, low, &e->high);
 }
 
-estimator_output_t flux_source_look_on(drive_t* d, const estimator_input_t* in, const estimator_output_t* truth) {
+estimator_output_t flux_source_look_on(const drive_t* d, const estimator_input_t* in, const estimator_output_t* truth) {
   if (q_abs_sat(truth->speed_bpp) >= d->config.blend.low_bpp) return step(d, in, false);
   flux_source_follow(d, truth);
   return *truth;
@@ -165,7 +163,7 @@ static int32_t observability_current(const drive_t* d) {
   const int32_t least_q20 =
       q_min(OBSERVABLE_CURRENTS * d->config.dead_time.edge_band_q20, q_shr(c->current_limit_q20, 1));
   const bool unobservable =
-      d->position.blend.share_q15 == 0 && q_abs_sat(d->position.selected.speed_bpp) < flux_config.adaptation.lowest_bpp;
+      d->estimate.blend.share_q15 == 0 && q_abs_sat(d->estimate.selected.speed_bpp) < flux_config.adaptation.lowest_bpp;
   const int32_t missing_q20 = unobservable ? q_max(least_q20 - q_abs_sat(c->references.current_q20.q), 0) : 0;
   flux_observability_q20 = q_follow(flux_observability_q20, missing_q20, OBSERVABILITY_SHIFT);
   return -flux_observability_q20;
@@ -173,11 +171,11 @@ static int32_t observability_current(const drive_t* d) {
 
 // The observer below the blend, the stator flux above, both between. There nothing is learnt of the windows, for want
 // of time.
-static estimator_output_t source_flux(drive_t* d, estimator_input_t* in) {
-  in->regress = in->regress && (d->position.blend.region == BLEND_LOW || polarity_watch_is_awake(d));
-  if (position_observer_rests(d)) return flux_source_alone(d, in);
-  const estimator_output_t low = source_observer(d, in);
-  return flux_source_beside(d, in, &low);
+static estimator_output_t source_flux(const drive_t* d, drive_estimate_t* e, estimator_input_t* in) {
+  in->regress = in->regress && (e->blend.region == BLEND_LOW || polarity_watch_is_awake(d));
+  if (position_observer_rests(d)) return flux_source_alone(d, e, in);
+  const estimator_output_t low = source_observer(d, e, in);
+  return flux_source_beside(d, e, in, &low);
 }
 
 const position_source_t flux_source = {source_flux,

@@ -25,16 +25,20 @@ extern flux_observer_config_t flux_config;
 /// Makes them; false where the flux is wanted for a machine that it cannot be given.
 extern const config_part_t flux_part;
 
+/// The stator flux above the blend, the deviation observer below.
+extern const position_source_t flux_source;
+
 /// The flux begins anew; where it keeps it goes on.
 void flux_source_begin(const drive_t* d, bool keeps);
 
 /// Sets the flux to what this angle, in whose frame the current is measured, lets expect.
 void flux_source_follow(const drive_t* d, const estimator_output_t* now);
 
-estimator_output_t flux_source_alone(drive_t* d, const estimator_input_t* in);
-estimator_output_t flux_source_beside(drive_t* d, const estimator_input_t* in, const estimator_output_t* low);
+estimator_output_t flux_source_alone(const drive_t* d, drive_estimate_t* e, const estimator_input_t* in);
+estimator_output_t flux_source_beside(const drive_t* d, drive_estimate_t* e, const estimator_input_t* in,
+                                      const estimator_output_t* low);
 
 /// flux_beside: a method beside a source that is right, from flux_low on; what the method says.
-estimator_output_t flux_source_look_on(drive_t* d, const estimator_input_t* in, const estimator_output_t* truth);
+estimator_output_t flux_source_look_on(const drive_t* d, const estimator_input_t* in, const estimator_output_t* truth);
 
 #endif

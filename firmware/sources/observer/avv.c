@@ -2,20 +2,20 @@
 
 #include <stddef.h>
 
-#include "firmware/sources/sources.h"
+#include "firmware/sources/observer/observer.h"
 
 int32_t source_deviation_q20;
 
-void source_step_avv(drive_t* d, const estimator_input_t* in) {
-  d->position.high = avv_step(&d->position.avv, &d->config.avv, in);
+void source_step_avv(const drive_t* d, drive_estimate_t* e, const estimator_input_t* in) {
+  e->high = avv_step(&e->avv, &d->config.avv, in);
   if (d->flags.frozen) return;
-  if (d->schedule.slot == SLOT_REGRESSION) d->position.is_near = q_abs_sat(d->position.avv.error_bam) <= AVV_NEAR_BAM;
-  source_learn(d, &d->position.avv.regression);
+  if (d->schedule.slot == SLOT_REGRESSION) e->is_near = q_abs_sat(e->avv.error_bam) <= AVV_NEAR_BAM;
+  source_learn(d, e, &e->avv.regression);
 }
 
-static estimator_output_t source_avv(drive_t* d, estimator_input_t* in) {
-  source_step_avv(d, in);
-  return d->position.high;
+static estimator_output_t source_avv(const drive_t* d, drive_estimate_t* e, estimator_input_t* in) {
+  source_step_avv(d, e, in);
+  return e->high;
 }
 
 const position_source_t avv_source = {source_avv, NULL, NULL, NULL, NULL, NULL, SOURCE_AVV_FIRST | SOURCE_ACTIVE, 3};

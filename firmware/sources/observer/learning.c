@@ -3,31 +3,32 @@
 #include "estimators/sensor_match.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/steps.h"
-#include "firmware/sources/sources.h"
+#include "firmware/sources/observer/observer.h"
 
 // A period with three windows has no room for both the polarity's watch and what else has the slot.
 static bool is_full(const drive_t* d) { return d->samples.count >= ESTIMATOR_WINDOWS; }
 
 static bool is_slot(const drive_t* d, schedule_slot_t slot) { return d->schedule.slot == slot; }
 
-static void match_sensors(drive_t* d, const regression_t* r, q_inverse_t per_spread, int32_t share_q30) {
+static void match_sensors(const drive_t* d, drive_estimate_t* e, const regression_t* r, q_inverse_t per_spread,
+                          int32_t share_q30) {
   if (!d->modulation.state.is_alternating) return;
-  sensor_match_step(&d->trim.mismatch_q30, r, per_spread, d->model.yd_q30 / 2 + d->model.yq_q30 / 2, share_q30);
+  sensor_match_step(&e->trim.mismatch_q30, r, per_spread, e->model.yd_q30 / 2 + e->model.yq_q30 / 2, share_q30);
 }
 
-void source_learn(drive_t* d, const regression_t* r) {
+void source_learn(const drive_t* d, drive_estimate_t* e, const regression_t* r) {
   const bool inductance = is_slot(d, SLOT_INDUCTANCE);
-  if (!(inductance || is_slot(d, SLOT_VOLTAGE)) || !d->position.is_near) return;
+  if (!(inductance || is_slot(d, SLOT_VOLTAGE)) || !e->is_near) return;
   // The slot comes 5/4 as seldom where eight of ten periods have one, and 5/2 where four have; there, learning 3/2 as
   // much leaves the angle quieter.
   const int32_t share_q30 = d->config.adapt_share_q30 / 4 * (d->schedule.turning ? 6 : 5);
   const bool runs = drive_is_turning(d);
   const q_inverse_t per_spread = q_invert(r->spread_q8);
-  if (inductance) inverse_inductance_step(&d->model, r, per_spread, share_q30);
+  if (inductance) inverse_inductance_step(&e->model, r, per_spread, share_q30);
   if (inductance == runs) {
-    match_sensors(d, r, per_spread, share_q30);
+    match_sensors(d, e, r, per_spread, share_q30);
   } else if (runs && !(polarity_watch_is_awake(d) && is_full(d))) {
-    const int32_t w_q30 = machine_speed_rad_q30(d->position.selected.speed_bpp);
-    voltage_match_step(&d->model, r, w_q30, d->config.drift_share_q30 / 2 * 3);
+    const int32_t w_q30 = machine_speed_rad_q30(e->selected.speed_bpp);
+    voltage_match_step(&e->model, r, w_q30, d->config.drift_share_q30 / 2 * 3);
   }
 }

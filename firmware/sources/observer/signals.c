@@ -1,6 +1,6 @@
 // Looks at the signals of what position sources have in common.
 
-#include "firmware/sources/sources.h"
+#include "firmware/sources/observer/observer.h"
 
 // Behind everything else: it has short names.
 #include "firmware/drive/signal_looks.h"

@@ -7,7 +7,7 @@
 #include "firmware/base/clear.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/position.h"
-#include "firmware/sources/sources.h"
+#include "firmware/sources/observer/observer.h"
 #include "hal/qmath/qcall.h"
 
 #define PER_PERIOD2_Q18 11258999L  // rad/s^2 (Q8) to rad per period^2 (Q40)
@@ -51,66 +51,64 @@ static int32_t enter_bpp(const drive_t* d) { return d->config.blend.low_bpp / 4 
 // Both at work, in periods of their own: long zero vectors and extended active ones by turns, where the pulses are left
 // to the source.
 static bool is_by_turns(const drive_t* d) {
-  return (paper_config.terms & LONG_ZERO_BY_TURNS) != 0u && !blend_is_high(&d->position.blend) &&
+  return (paper_config.terms & LONG_ZERO_BY_TURNS) != 0u && !blend_is_high(&d->estimate.blend) &&
          d->config.values.excitation == EXCITATION_BY_SOURCE &&
-         q_abs_sat(d->position.selected.speed_bpp) >= enter_bpp(d);
+         q_abs_sat(d->estimate.selected.speed_bpp) >= enter_bpp(d);
 }
 
-static void step_zvv(drive_t* d, const estimator_input_t* in) {
-  d->position.low = zvv_step(&paper_zvv, &paper_config, in, d->control.references.current_q20.d);
+static void step_zvv(const drive_t* d, drive_estimate_t* e, const estimator_input_t* in) {
+  e->low = zvv_step(&paper_zvv, &paper_config, in, d->control.references.current_q20.d);
   source_deviation_q20 = paper_zvv.deviation_q20;
 }
 
-static void step_avv(drive_t* d, const estimator_input_t* in) {
+static void step_avv(const drive_t* d, drive_estimate_t* e, const estimator_input_t* in) {
   if ((paper_config.terms & AVV_RESIDUALS) != 0u) {
-    source_step_avv(d, in);
+    source_step_avv(d, e, in);
   } else {
-    d->position.high = avv_printed_step(&d->position.avv, &d->config.avv, in);
+    e->high = avv_printed_step(&e->avv, &d->config.avv, in);
   }
 }
 
 // Above the blend nobody asks ZVV.
-static bool avv_alone(const drive_t* d) { return blend_is_high(&d->position.blend); }
+static bool avv_alone(const drive_t* d) { return blend_is_high(&d->estimate.blend); }
 
 // Who looks at the windows where there is no room for both in a period: by turns the one that they were made for, else
 // ZVV beside speed control and field weakening and AVV in all others.
 static bool is_of_zvv(const drive_t* d) {
   if (is_by_turns(d)) return d->samples.count <= 1u;
   const bool is_long = d->schedule.task == TASK_SPEED || d->schedule.task == TASK_FIELD;
-  return is_long != blend_is_low(&d->position.blend);
+  return is_long != blend_is_low(&d->estimate.blend);
 }
 
-static void step_alternately(drive_t* d, estimator_input_t* in) {
-  drive_position_t* const p = &d->position;
+static void step_alternately(const drive_t* d, drive_estimate_t* e, estimator_input_t* in) {
   const uint16_t count = in->window_count;
   const bool of_zvv = is_of_zvv(d);
   if (of_zvv) in->window_count = 0;
-  step_avv(d, in);
+  step_avv(d, e, in);
   if (of_zvv) {
     in->window_count = count;
     in->frames = 0;
-    step_zvv(d, in);
+    step_zvv(d, e, in);
   } else {
     zvv_wait(&paper_zvv);
-    p->low.angle_bam = paper_zvv.angle_bam;
+    e->low.angle_bam = paper_zvv.angle_bam;
   }
 }
 
 // The estimator that is not asked stands by at the other's angle.
-static estimator_output_t source_paper(drive_t* d, estimator_input_t* in) {
-  drive_position_t* const p = &d->position;
+static estimator_output_t source_paper(const drive_t* d, drive_estimate_t* e, estimator_input_t* in) {
   if (position_low_alone(d) && !is_by_turns(d)) {
-    step_zvv(d, in);
-    p->high = p->low;
-    avv_preset(&p->avv, p->low.angle_bam, p->low.speed_bpp, p->low.load_accel_q8);
+    step_zvv(d, e, in);
+    e->high = e->low;
+    avv_preset(&e->avv, e->low.angle_bam, e->low.speed_bpp, e->low.load_accel_q8);
   } else if (avv_alone(d)) {
-    step_avv(d, in);
-    p->low = p->high;
-    zvv_preset(&paper_zvv, p->high.angle_bam, p->high.speed_bpp, p->high.load_accel_q8);
+    step_avv(d, e, in);
+    e->low = e->high;
+    zvv_preset(&paper_zvv, e->high.angle_bam, e->high.speed_bpp, e->high.load_accel_q8);
   } else {
-    step_alternately(d, in);
+    step_alternately(d, e, in);
   }
-  return blend_step(&p->blend, &d->config.blend, &p->low, &p->high);
+  return blend_step(&e->blend, &d->config.blend, &e->low, &e->high);
 }
 
 // Long zero vectors at low speed and extended active ones from below the blend on.
@@ -120,11 +118,11 @@ static excitation_t paper_excitation(const drive_t* d) {
     const unsigned seen = (d->schedule.period + 2u) % DRIVE_PERIODS_PER_MS;
     return ((ZVV_PERIODS_OF_MS >> seen & 1u) != 0u) ? EXCITATION_LONG_ZERO : EXCITATION_EXTENDED;
   }
-  return (q_abs_sat(d->position.selected.speed_bpp) < enter_bpp(d)) ? EXCITATION_LONG_ZERO : EXCITATION_EXTENDED;
+  return (q_abs_sat(d->estimate.selected.speed_bpp) < enter_bpp(d)) ? EXCITATION_LONG_ZERO : EXCITATION_EXTENDED;
 }
 
 static void paper_begin(const drive_t* d, bool keeps) {
-  if (!keeps) zvv_preset(&paper_zvv, d->position.selected.angle_bam, d->position.selected.speed_bpp, 0);
+  if (!keeps) zvv_preset(&paper_zvv, d->estimate.selected.angle_bam, d->estimate.selected.speed_bpp, 0);
 }
 
 const position_source_t paper_source = {

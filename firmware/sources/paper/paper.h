@@ -13,6 +13,9 @@ extern zvv_t paper_zvv;
 extern zvv_config_t paper_config;
 extern const config_part_t paper_part;
 
+/// ZVV below the blend, AVV above.
+extern const position_source_t paper_source;
+
 /// As after power-on.
 void paper_reset(void);
 

@@ -63,7 +63,7 @@ static start_phase_t listen(uint16_t pause) {
 // takes the inverse inductance of the model as it is by now: a machine of other inductances looks like one of another
 // flux.
 static void take_flux(drive_t* d) {
-  machine_model_t* const m = &d->model;
+  machine_model_t* const m = &d->estimate.model;
   const int32_t w_q30 = qc_abs_sat(machine_speed_rad_q30(flying_start.rotor.speed_bpp));
   m->trim.psi_q16 = 0;
   if (flying_start.emf_q16 < FLUX_EMF_Q16) return;  // a pair that fits has a speed that fits its size
@@ -83,7 +83,7 @@ static void close_loop(drive_t* d) {
   flying_rotor_t* const rotor = &flying_start.rotor;
   const int32_t periods_q16 = q_div((int32_t)(clock_of(d) - (uint32_t)rotor->tick), ESTIMATOR_PERIOD_TICKS, 16);
   rotor->angle_bam += (uint32_t)(((int64_t)rotor->speed_bpp * periods_q16) >> 16);
-  position_preset_axis(d, rotor->angle_bam, rotor->speed_bpp);
+  position_preset_axis(&d->estimate, rotor->angle_bam, rotor->speed_bpp);
   take_flux(d);
   axis_begin(&starting.axis);
   starting.sigma_q8 = rotor->sigma_q8;
@@ -93,7 +93,7 @@ static void close_loop(drive_t* d) {
   flying_start.stray = 0;
   d->control.references.closed = true;
   field_weakening_reset(&d->control.weakening);
-  drive_weaken_field(d);
+  drive_weaken_field(d, &d->control);
 }
 
 // The gates are off already.
@@ -108,7 +108,7 @@ static start_phase_t try_again(drive_t* d) {
   s->pulses = 0;
   if (starting.tries < PAIRS_MAX) return listen(PAUSE_MIN);
   if (d->flags.behind == DRIVE_READY) {
-    end_look(d, LOOK_UNCLEAR, flying_speed(s->emf_q16, &d->model));
+    end_look(d, LOOK_UNCLEAR, flying_speed(s->emf_q16, &d->estimate.model));
   } else {
     drive_trip(d, FAULT_POLARITY);
   }
@@ -118,7 +118,7 @@ static start_phase_t try_again(drive_t* d) {
 static start_phase_t judge_pair(drive_t* d, const flying_emf_t* second) {
   flying_start_t* const s = &flying_start;
   s->emf_q16 = second->size_q16;
-  if (!flying_resolve(&s->first, second, &d->model, &s->rotor)) return try_again(d);
+  if (!flying_resolve(&s->first, second, &d->estimate.model, &s->rotor)) return try_again(d);
   if (d->flags.behind != DRIVE_READY) return START_CATCH;
   end_look(d, LOOK_TURNS, s->rotor.speed_bpp);
   return START_GOES_ON;
@@ -126,19 +126,19 @@ static start_phase_t judge_pair(drive_t* d, const flying_emf_t* second) {
 
 static start_phase_t find_no_emf(drive_t* d) {
   if (d->flags.behind != DRIVE_READY) return start_at_standstill(d);
-  end_look(d, LOOK_STANDS, flying_speed(STANDING_Q16, &d->model));
+  end_look(d, LOOK_STANDS, flying_speed(STANDING_Q16, &d->estimate.model));
   return START_GOES_ON;
 }
 
 // The gates are off again.
 static start_phase_t judge_pulse(drive_t* d) {
   flying_start_t* const s = &flying_start;
-  const flying_emf_t e = flying_evaluate(&s->pulse, &d->model);
+  const flying_emf_t e = flying_evaluate(&s->pulse, &d->estimate.model);
   if (e.size_q16 < STANDING_Q16) return find_no_emf(d);
   s->pulses++;
   if (s->pulses > 1u) return judge_pair(d, &e);
   s->first = e;
-  return listen((uint16_t)flying_pause(&e, &d->model, PAUSE_MIN, PAUSE_MAX));
+  return listen((uint16_t)flying_pause(&e, &d->estimate.model, PAUSE_MIN, PAUSE_MAX));
 }
 
 // Middle of a window of the last period, on the start's clock; ticks count on behind the end of their format.
@@ -153,7 +153,7 @@ static start_phase_t step_pulse(drive_t* d) {
     const estimator_window_t* const w = &d->samples.windows[k];
     // Of the period in which the gates came on, what lies behind that instant counts: at 3000 rpm it is enough.
     const bool early = d->flags.invalid > 0u && w->middle_tick - w->span_ticks / 2 < starting.on_tick + ON_TICKS;
-    if (!early) flying_add(&s->pulse, &d->model, w, tick_of(d, w));
+    if (!early) flying_add(&s->pulse, &d->estimate.model, w, tick_of(d, w));
   }
   const bool enough = flying_current(&s->pulse) > d->config.values.current_limit / 16;
   if (s->pulse.windows > 0u && (enough || starting.tick >= PULSE_MAX)) start_power(d, false);
@@ -163,7 +163,7 @@ static start_phase_t step_pulse(drive_t* d) {
 static void carry_on(drive_t* d, int32_t axis_bam) {
   flying_rotor_t* const rotor = &flying_start.rotor;
   rotor->angle_bam += (uint32_t)rotor->speed_bpp + (uint32_t)axis_bam;
-  position_preset_axis(d, rotor->angle_bam, rotor->speed_bpp);
+  position_preset_axis(&d->estimate, rotor->angle_bam, rotor->speed_bpp);
 }
 
 // A start that asks no saliency for the axis has nothing to learn and nothing to watch: the pulses' word is the last.
@@ -209,10 +209,10 @@ static start_phase_t step_catch(drive_t* d) {
     s->flux_due = false;
     return START_GOES_ON;
   }
-  s->stray = qc_follow(s->stray, d->position.avv.error_bam, 4);
+  s->stray = qc_follow(s->stray, d->estimate.avv.error_bam, 4);
   if (starting.tick < CATCH_PERIODS || !start_has_exclusive_slot(d)) return START_GOES_ON;
   if (qc_abs_sat(s->stray) >= STRAY_MAX_BAM) return try_again(d);
-  start_run(d, d->position.avv.observer.angle_bam, d->position.avv.observer.speed_bpp);
+  start_run(d, d->estimate.avv.observer.angle_bam, d->estimate.avv.observer.speed_bpp);
   return START_GOES_ON;
 }
 
