@@ -96,10 +96,11 @@ static bool approach(drive_t* d) {
 
 // From the most to half of it, and back with the other sign.
 static void refer_d(drive_t* d) {
-  const spin_t* const s = &commissioning.spin;
-  int32_t parts = ((s->tick < SIGN_PERIODS) ? REST_PERIODS : SETTLE_PERIODS) - s->tick;
-  if (s->tick < SETTLE_PERIODS || s->tick >= REST_PERIODS - DRIVE_PERIODS_PER_MS) parts = 0;
-  d->control.spin_d_q20 = s->part_q20 * parts;
+  const int32_t tick = commissioning.spin.tick;
+  int32_t parts = 0;
+  if (tick >= SETTLE_PERIODS && tick < REST_PERIODS - DRIVE_PERIODS_PER_MS)
+    parts = ((tick < SIGN_PERIODS) ? REST_PERIODS : SETTLE_PERIODS) - tick;
+  d->control.spin_d_q20 = commissioning.spin.part_q20 * parts;
 }
 
 // Back to holding the shaft, with the motion that the background level makes of the sums.
