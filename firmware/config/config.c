@@ -13,7 +13,6 @@
 #define K0_MAX_Q20 1048576000L        // lambda/L of 1000 A
 #define CRAWL_MAX_RPM_Q16 655360L     // where cogging is learnt
 #define HOLD_BELOW_RPM_Q16 1310720L   // 20 rpm
-#define COGGING_MAX_Q20 1048576L      // 1 N m
 #define RELUCTANCE_END_Q16 1671168L   // 25.5 N m/A with the full scale, half of the largest current
 #define EDGE_BAND_Q20 524288L         // half an ampere of ripple may be predicted wrong
 #define RAD_PER_RPM_Q47 1473799531L   // 2 pi / 60 * 100 us
@@ -203,7 +202,7 @@ static bool load_position(drive_config_t* c) {
                                                 c->mapped};
   deviation_observer_design(&c->observer, &c->nameplate, &observer);
   c->observer.cogging.order = p->cogging_order;
-  c->observer.cogging.bound_q8 = q_min(qc_mul_sat(c->nameplate.accel_q12, COGGING_MAX_Q20, 24), COGGING_BOUND_END_Q8);
+  c->observer.cogging.bound_q8 = q_min(qc_mul_sat(c->nameplate.accel_q12, p->observer_load_rate, 24), COGGING_BOUND_END_Q8);
   c->observer.zero_vectors_only = p->observer_windows == 0;
   load_hold_observer(c, &observer);
   c->synchronism.floor_q16 = p->synchronism_floor;

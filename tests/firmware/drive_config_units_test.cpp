@@ -180,13 +180,14 @@ TEST_F(Units, WithoutTheMapNoStepIsLookedForAtSpeedAndThreeQuartersOfItAtACrawl)
 
 TEST_F(Units, CoggingAndWindowsOfTheObserver) {
   parameters.cogging_order = 17;
+  parameters.observer_load_rate = raw(0.75, 20);
   const drive_config_t& c = made();
   EXPECT_EQ(c.observer.cogging.order, 17);
   expect_near_share(c.observer.cogging.crawl_bpp, 10.0 * kBppPerRpm, 1e-4);
-  // The acceleration of 1 N m.
+  // The acceleration of the load's rate.
   const Motor m;
   expect_near_share(real(c.observer.cogging.bound_q8, 8),
-                    m.pole_pairs / m.inertia * kPeriod * kPeriod / kTurn * 4294967296.0, 1e-3);
+                    0.75 * m.pole_pairs / m.inertia * kPeriod * kPeriod / kTurn * 4294967296.0, 1e-3);
   EXPECT_FALSE(c.observer.zero_vectors_only);
   parameters.observer_windows = 0;
   EXPECT_TRUE(made().observer.zero_vectors_only);
