@@ -7,6 +7,8 @@
 #define SHIFT_MAX_BAM 536870912L  // 45 degrees
 #define MEAN_SHIFT 10u            // 100 ms
 #define FILTER_LEAST 3u
+#define AWAY_SHARE 16  // of the EMF below which no direction is seen: twice that of the last speed
+#define AWAY_MS 50     // a current that changes takes less
 #define FILTER_MOST 8u
 
 // Lq I/(lambda w0) in periods, as the next power of two.
@@ -40,35 +42,62 @@ static uint32_t quarter_turn_on(uint32_t angle_bam, bool forward) {
   return forward ? angle_bam + ANGLE_BAM_QUARTER_TURN : angle_bam - ANGLE_BAM_QUARTER_TURN;
 }
 
-void if_start_begin(if_start_t* s, uint32_t angle_bam, bool backward) {
+void if_start_begin(if_start_t* s, const if_start_config_t* c, uint32_t angle_bam, bool backward) {
   static const if_start_t fresh = {0};
   *s = fresh;
-  s->backward = backward;
+  s->end_bpp = backward ? -c->speed_bpp : c->speed_bpp;
   s->vector_bam = quarter_turn_on(angle_bam, backward);
   s->angle_bam = s->vector_bam;
+}
+
+void if_start_begin_turning(if_start_t* s, const if_start_config_t* c, uint32_t angle_bam, int32_t current_q20,
+                            int32_t speed_bpp) {
+  if_start_begin(s, c, angle_bam, speed_bpp < 0);
+  s->took_over = true;
+  s->vector_bam = angle_bam;
+  s->current_q20 = current_q20;
+  s->tick = c->align_periods;
+  s->speed_bpp = speed_bpp;
+  s->rotor_bpp = speed_bpp;
+  s->mean_bpp = speed_bpp;
 }
 
 // At rest it points a quarter turn behind first: a rotor that is half a turn away from one of them is not from the
 // other.
 static void step_vector(if_start_t* s, const if_start_config_t* c) {
   const int32_t half = c->align_periods / 2;
-  s->current_q20 = (s->tick < half) ? c->current_q20 / half * s->tick : c->current_q20;
-  if (s->tick == half) s->vector_bam = quarter_turn_on(s->vector_bam, !s->backward);
+  if (s->tick < half) s->current_q20 = c->current_q20 / half * s->tick;
+  if (s->tick == half) {
+    s->current_q20 = c->current_q20;
+    s->vector_bam = quarter_turn_on(s->vector_bam, s->end_bpp >= 0);
+  }
   if (s->tick < c->align_periods) return;
-  const int32_t end = s->backward ? -c->speed_bpp : c->speed_bpp;
-  s->speed_bpp = q_clamp(end, s->speed_bpp - c->step_bpp, s->speed_bpp + c->step_bpp);
+  s->speed_bpp = q_clamp(s->end_bpp, s->speed_bpp - c->step_bpp, s->speed_bpp + c->step_bpp);
   s->vector_bam += (uint32_t)s->speed_bpp;
 }
 
 // The EMF's own mean direction: along it is, to first order, the rotor's speed alone, whatever the lag. Near standstill
-// it is that of no lag.
-void if_start_renew(if_start_t* s, const if_start_config_t* c) {
-  const int32_t d = s->backward ? -s->mean_q16.d : s->mean_q16.d;
-  const int32_t q = qc_add_sat(s->backward ? -s->mean_q16.q : s->mean_q16.q, c->least_q16);
+// it is that of no lag. A vector that begins to turn the other way turns the EMF over.
+static void renew_direction(if_start_t* s, const if_start_config_t* c) {
+  const int32_t sign = (s->speed_bpp < 0) ? -1 : 1;
+  if (sign != s->sign) {
+    s->mean_q16.d = -s->mean_q16.d;
+    s->mean_q16.q = -s->mean_q16.q;
+    s->sign = sign;
+  }
+  const int32_t d = sign * s->mean_q16.d;
+  const int32_t q = qc_add_sat(sign * s->mean_q16.q, c->least_q16);
   const int32_t length = q_hypot(d, q);
   s->per_emf_q4.d = qc_mul(q_div(d, length, 30), c->per_emf_q4, 30);
   s->per_emf_q4.q = qc_mul(q_div(q, length, 30), c->per_emf_q4, 30);
+}
+
+void if_start_renew(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
+  renew_direction(s, c);
   s->drop_q16 = qc_mul_sat(c->resistance_q24, s->current_q20, 28);
+  if (!s->took_over || if_start_is_up(s, c)) return;
+  const int32_t across_q16 = q_max(qc_abs_sat(qc_sub_sat(voltage_q16.d, s->drop_q16)), qc_abs_sat(voltage_q16.q));
+  s->waited = (across_q16 / AWAY_SHARE > c->least_q16) ? q_min(s->waited, 0) - 1 : 0;
 }
 
 static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
@@ -88,7 +117,7 @@ if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t 
   s->tick = q_min(s->tick + 1, c->align_periods);
   step_vector(s, c);
   damp(s, c, voltage_q16);
-  if (!if_start_is_up(s, c)) return IF_START_PENDING;
+  if (!if_start_is_up(s, c)) return (s->waited < -AWAY_MS) ? IF_START_FAILED : IF_START_PENDING;
   const bool near = qc_abs_sat(angle_diff_bam(s->vector_bam, seen_bam)) < ANGLE_80_DEG &&
                     qc_abs_sat(qc_sub_sat(seen_bpp, s->speed_bpp)) < c->speed_bpp / 4;
   s->agreed = near ? s->agreed + 1 : 0;

@@ -13,6 +13,11 @@
 // gains with frequency up to the current control's and swings there. So w~ is filtered over Lq I/(lambda w0) at least;
 // where Lq I is more than half of lambda, that leaves little damping.
 //
+// It may take over a rotor that turns as well, to keep it where the source sees nothing, or to turn it through
+// standstill: then it goes where `end_bpp` says, either way.
+//
+// One that a load has pulled out of step runs away: an EMF of twice the last speed for 50 ms is the end.
+//
 // The source takes over when for 300 ms it has been within 80 degrees of the vector and within a quarter of its speed.
 
 #ifndef STILLSPIN_CONTROL_IF_START_H
@@ -44,6 +49,7 @@ typedef enum { IF_START_PENDING = 0, IF_START_TAKEN_OVER = 1, IF_START_FAILED = 
 typedef struct {
   int32_t tick;            // periods since the beginning, at most those at rest
   int32_t speed_bpp;       // of the vector
+  int32_t end_bpp;         // that it is to have, with its sign: up to that of the configuration
   uint32_t vector_bam;     // its angle without the damping
   uint32_t angle_bam;      // of the frame to control in
   int32_t current_q20;     // i_d to ask for
@@ -52,23 +58,30 @@ typedef struct {
   int32_t drop_q16;        // at the resistance, V
   int32_t rotor_bpp;       // speed of the rotor by the EMF, filtered
   int32_t mean_bpp;        // its mean
-  int32_t agreed, waited;  // periods
-  bool backward;
+  int32_t agreed, waited;  // periods; below 0: ms in which the EMF has been too large
+  int32_t sign;            // of the speed that the mean belongs to
+  bool took_over;          // a rotor that turned already
 } if_start_t;
 
 /// Derives damping and speed from the machine. False where the spring is slower than 1 s or faster than 10 periods.
 bool if_start_design(if_start_config_t* c, const machine_model_t* m, const if_start_parameters_t* p);
 
 /// angle_bam: where the vector points when it begins to turn.
-void if_start_begin(if_start_t* s, uint32_t angle_bam, bool backward);
+void if_start_begin(if_start_t* s, const if_start_config_t* c, uint32_t angle_bam, bool backward);
+
+/// The vector takes over a rotor that turns. angle_bam: where it points; current_q20: its length; speed_bpp: of the
+/// rotor.
+void if_start_begin_turning(if_start_t* s, const if_start_config_t* c, uint32_t angle_bam, int32_t current_q20,
+                            int32_t speed_bpp);
 
 /// True once the vector has its last speed.
 static inline bool if_start_is_up(const if_start_t* s, const if_start_config_t* c) {
   return q_abs_sat(s->speed_bpp) >= c->speed_bpp;
 }
 
-/// What changes slowly: once in a millisecond. Before the first time no speed is made of the EMF.
-void if_start_renew(if_start_t* s, const if_start_config_t* c);
+/// What changes slowly: once in a millisecond. Before the first time no speed is made of the EMF. voltage: as of a
+/// step.
+void if_start_renew(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16);
 
 /// One period. voltage: command in the last one, V; seen: angle and speed of the source.
 if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16, uint32_t seen_bam,

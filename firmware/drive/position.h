@@ -34,6 +34,13 @@ static inline void position_look_away(drive_estimate_t* e) { e->seen = e->select
 /// What the source has seen of a shaft that a vector turned is used from here on, and it goes on as it is.
 void position_keep(const drive_t* d, drive_estimate_t* e);
 
+/// The frame in use moves ahead of where it was; the source goes on seeing what it saw.
+static inline void position_turn(drive_estimate_t* e, uint32_t ahead_bam) {
+  e->seen = e->selected;
+  e->selected.angle_bam += ahead_bam;
+  e->measured_q20 = frame_moved(e->measured_q20, ahead_bam);
+}
+
 /// True where the deviation observer reads the windows now.
 bool position_observer_reads(const drive_t* d);
 

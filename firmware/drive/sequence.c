@@ -137,10 +137,16 @@ static void take_speed(drive_t* d) {
   c->target_bpp = qc_mul_sat(q_clamp(c->command_rpm_q16, -limit_q16, limit_q16), d->config.bpp_per_rpm_q8, 24);
 }
 
+// Once in a millisecond, where the speed control has nothing to do.
+static void step_run(drive_t* d) {
+  if (drive_states[DRIVE_RUN] != NULL) drive_states[DRIVE_RUN]->step(d);
+}
+
 void drive_sequence(drive_t* d) {
   d->periods++;
   d->heartbeat++;
   if (d->schedule.task == TASK_SPEED) d->time_ms++;
+  if (d->schedule.task == TASK_FIELD && d->state == DRIVE_RUN) step_run(d);
   hal_safety_toggle_enable();
   take_speed(d);
   switch (d->state) {

@@ -22,14 +22,22 @@ static void reset_control(drive_t* d) {
   position_hold_release(&d->control.position_hold);
 }
 
+static void enter(drive_t* d, drive_state_t behind) {
+  clear(&d->supervision, sizeof d->supervision);
+  clear(&starting, sizeof starting);
+  drive_enter(d, DRIVE_START);
+  d->flags.behind = behind;
+  d->flags.unseen = KNOWN_ROTOR;
+}
+
+void start_return(drive_t* d) { enter(d, DRIVE_RUN); }
+
 // False when it was refused, with a fault.
 static bool prepare(drive_t* d, drive_state_t behind) {
   if (!d->config_valid || !d->control.speed_ready) {
     drive_trip(d, FAULT_PARAMETER);
     return false;
   }
-  clear(&d->supervision, sizeof d->supervision);
-  clear(&starting, sizeof starting);
   d->wiring = WIRING_GOOD;
   d->estimate.model = d->config.nameplate;
   inertia_match_reset(&inertia_match);
@@ -37,10 +45,8 @@ static bool prepare(drive_t* d, drive_state_t behind) {
   d->estimate.trim.mismatch_q30 = d->config.sensor_mismatch_q30;
   position_preset(d, &d->estimate, 0, 0);
   reset_control(d);
-  drive_enter(d, DRIVE_START);
-  d->flags.behind = behind;
+  enter(d, behind);
   d->flags.gates_off = true;
-  d->flags.unseen = KNOWN_ROTOR;
   d->flags.invalid = 2;
   const drive_fault_t refusal = interlock_refusal();
   if (refusal != FAULT_NONE) drive_trip(d, refusal);

@@ -72,6 +72,9 @@ bool start_is_open_loop(const drive_t* d);
 /// refused, with a fault.
 bool start_begin_standstill(drive_t* d);
 
+/// Back from RUN to START, whose phase in hand the caller says; to RUN again, then.
+void start_return(drive_t* d);
+
 // What begins where a phase is over.
 start_phase_t start_look(const drive_t* d);           // is the shaft to be looked at? Else as if it stood
 start_phase_t start_at_standstill(const drive_t* d);  // the shaft stands

@@ -33,7 +33,7 @@ class Start {
     EXPECT_TRUE(if_start_design(&turn_config_, &model_, &p));
     current_controller_design(&current_config_, &model_, &kDesign);
     current_controller_reset(&current_);
-    if_start_begin(&turn_, 0, false);
+    if_start_begin(&turn_, &turn_config_, 0, false);
     frame_ = rad(turn_.angle_bam);
   }
 
@@ -45,7 +45,7 @@ class Start {
     while (result == IF_START_PENDING) {
       const Vector seen = mean_.turned(angle_ - frame_);
       const dq_t measured = raw_dq(seen, 20);
-      if (++periods % 10 == 0) if_start_renew(&turn_, &turn_config_);
+      if (++periods % 10 == 0) if_start_renew(&turn_, &turn_config_, command_);
       result = if_start_step(&turn_, &turn_config_, command_, 0, 0);
       frame_ = rad(turn_.angle_bam + static_cast<std::uint32_t>(turn_.speed_bpp));
       command_ = current_controller_step(&current_, &current_config_, &model_, {turn_.current_q20, 0}, measured,

@@ -29,13 +29,14 @@ if_start_config_t designed(const Motor& m, const if_start_parameters_t& p) {
 struct Shaft {
   Motor m = motor_b();
   double angle = 0.0, speed = 0.0, load = 0.0;  // electrical; the load against the motion, N m
+  double pull = 0.0;                            // a load that pulls one way, N m
 
   // Voltage in the vector's frame, V.
   Vector step(double frame, double current) {
     const double lag = frame - angle;
     const double torque =
         1.5 * m.pole_pairs * (m.flux + (m.ld - m.lq) * current * std::cos(lag)) * current * std::sin(lag);
-    const double against = std::clamp(speed, -1.0, 1.0) * load;
+    const double against = std::clamp(speed, -1.0, 1.0) * load + pull;
     const double accel = (torque - against - m.friction * speed / m.pole_pairs) * m.pole_pairs / m.inertia;
     speed += accel * kPeriod;
     angle += speed * kPeriod;
@@ -53,11 +54,11 @@ struct Turned {
 // Runs until it ends. The source sees the shaft `off` rad beside where it is, at its own speed.
 Turned turn(Shaft& shaft, const if_start_config_t& c, bool backward, double off = 0.0) {
   Turned t;
-  if_start_begin(&t.state, 0, backward);
+  if_start_begin(&t.state, &c, 0, backward);
   Vector voltage = {0.0, 0.0};
   double worst[2] = {0.0, 0.0};
   while (t.result == IF_START_PENDING && t.periods < 100000) {
-    if (t.periods % 10 == 0) if_start_renew(&t.state, &c);
+    if (t.periods % 10 == 0) if_start_renew(&t.state, &c, raw_dq(voltage, 16));
     t.result = if_start_step(&t.state, &c, raw_dq(voltage, 16), bam(shaft.angle + off), bpp(shaft.speed));
     voltage = shaft.step(rad(t.state.angle_bam), real(t.state.current_q20, 20));
     if (t.periods % 1000 == 0) worst[0] = std::exchange(worst[1], 0.0);
@@ -116,6 +117,56 @@ TEST(IfStart, GivesUpWhenTheSourceDoesNotAgree) {
   Shaft blocked;
   blocked.load = 6.0;
   EXPECT_EQ(turn(blocked, c, false).result, IF_START_FAILED);
+}
+
+// A rotor that turns is taken over under its load, and turned the other way: it never leaves the vector by more than a
+// fifth of its speed at the end, down to standstill and through.
+TEST(IfStart, TakesATurningRotorThroughStandstill) {
+  const if_start_config_t c = designed(motor_b(), usual());
+  for (const double pull : {-3.0, -1.0, 0.0, 1.0, 3.0}) {
+    for (const bool forward : {false, true}) {
+      Shaft shaft;
+      shaft.speed = forward ? 120.0 : -120.0;
+      shaft.angle = 0.4;
+      shaft.pull = pull;
+      if_start_t s = {};
+      const double ahead = std::asin(pull / (shaft.m.torque_constant() * 8.0));
+      if_start_begin_turning(&s, &c, bam(0.4 + ahead), raw(8.0, 20), bpp(shaft.speed));
+      s.end_bpp = forward ? -c.speed_bpp : c.speed_bpp;
+      Vector voltage = shaft.step(rad(s.angle_bam), 8.0);
+      double off = 0.0;
+      if_start_result_t result = IF_START_PENDING;
+      for (int n = 0; result == IF_START_PENDING && n < 40000; ++n) {
+        if (n % 10 == 0) if_start_renew(&s, &c, raw_dq(voltage, 16));
+        result = if_start_step(&s, &c, raw_dq(voltage, 16), bam(shaft.angle), bpp(shaft.speed));
+        voltage = shaft.step(rad(s.angle_bam), real(s.current_q20, 20));
+        off = std::max(off, std::fabs(shaft.speed - rad_per_s(s.speed_bpp)));
+      }
+      EXPECT_EQ(result, IF_START_TAKEN_OVER) << pull;
+      EXPECT_LT(off, 25.0) << pull;
+      EXPECT_NEAR(shaft.speed, forward ? -125.7 : 125.7, 2.5) << pull;
+    }
+  }
+}
+
+// One that a load pulls away is left alone with it 50 ms after its EMF is too large for the vector's.
+TEST(IfStart, ARotorThatRunsAwayIsGivenUp) {
+  const if_start_config_t c = designed(motor_b(), usual());
+  Shaft shaft;
+  shaft.speed = 120.0;
+  shaft.pull = 6.0;  // the vector bears 4.1
+  if_start_t s = {};
+  if_start_begin_turning(&s, &c, bam(1.5), raw(8.0, 20), bpp(120.0));
+  s.end_bpp = 0;
+  Vector voltage = shaft.step(rad(s.angle_bam), 8.0);
+  int away = -1, n = 0;
+  while (n < 20000 && if_start_step(&s, &c, raw_dq(voltage, 16), 0, 0) == IF_START_PENDING) {
+    if (n++ % 10 == 0) if_start_renew(&s, &c, raw_dq(voltage, 16));
+    voltage = shaft.step(rad(s.angle_bam), real(s.current_q20, 20));
+    if (away < 0 && std::fabs(shaft.speed) > 3.0 * 125.7) away = n;
+  }
+  ASSERT_GT(away, 0);
+  EXPECT_NEAR(n - away, 500, 250) << "by the largest of two components, which a turning EMF fills in turn";
 }
 
 TEST(IfStart, RefusesASpringThatIsTooSlowOrTooFast) {
@@ -206,7 +257,7 @@ TEST(IfStart, ItRisesAQuarterTurnBehind) {
   for (const bool backward : {false, true}) {
     const double way = backward ? -1.0 : 1.0;
     if_start_t s;
-    if_start_begin(&s, bam(1.0), backward);
+    if_start_begin(&s, &c, bam(1.0), backward);
     EXPECT_NEAR(wrapped(rad(s.vector_bam) - (1.0 - way * kPi / 2.0)), 0.0, 1e-6);
     EXPECT_EQ(s.angle_bam, s.vector_bam);
     for (int n = 1; n <= 999; ++n) {
@@ -224,12 +275,12 @@ TEST(IfStart, ItRisesAQuarterTurnBehind) {
 TEST(IfStart, ItsFiltersHaveTheirTimes) {
   const if_start_config_t c = designed(motor_b(), usual());
   if_start_t s;
-  if_start_begin(&s, 0, false);
+  if_start_begin(&s, &c, 0, false);
   const double emf = 10.0, seen = 10.0 * real(c.per_emf_q4, 4);
   double rotor = 0.0, mean = 0.0;
   for (int n = 1; n <= 3000; ++n) {
     const double drop = motor_b().rs * 8.0 * std::min((n - 1) / 500.0, 1.0);  // of the current that is known then
-    if_start_renew(&s, &c);
+    if_start_renew(&s, &c, {0, 0});
     (void)if_start_step(&s, &c, raw_dq({drop, emf}, 16), 0, 0);
     rotor += (seen - rotor) / std::ldexp(1.0, c.filter_shift);
     mean += (rotor - mean) / 1024.0;
@@ -248,7 +299,7 @@ TEST(IfStart, AgreementAndPatienceAreCountedFromTheLastSpeedOn) {
   const if_start_config_t c = designed(motor_b(), usual());
   for (const bool agrees : {false, true}) {
     if_start_t s;
-    if_start_begin(&s, 0, false);
+    if_start_begin(&s, &c, 0, false);
     int up = 0;
     if_start_result_t result = IF_START_PENDING;
     while (result == IF_START_PENDING) {
@@ -264,7 +315,7 @@ TEST(IfStart, AgreementAndPatienceAreCountedFromTheLastSpeedOn) {
     EXPECT_EQ(up, agrees ? 3000 : 20001);
   }
   if_start_t s;
-  if_start_begin(&s, 0, false);
+  if_start_begin(&s, &c, 0, false);
   while (!if_start_is_up(&s, &c)) (void)if_start_step(&s, &c, {0, 0}, 0, 0);
   const std::uint32_t next = s.vector_bam + static_cast<std::uint32_t>(s.speed_bpp);
   (void)if_start_step(&s, &c, {0, 0}, next, c.speed_bpp - c.speed_bpp / 4);
@@ -277,7 +328,7 @@ TEST(IfStart, TheCurrentHasItsLengthFromTheMiddleOfTheRestOn) {
   p.current_q20 = raw(8.0, 20) + 499;  // no multiple of the steps
   const if_start_config_t c = designed(motor_b(), p);
   if_start_t s;
-  if_start_begin(&s, 0, false);
+  if_start_begin(&s, &c, 0, false);
   for (int n = 1; n <= 2000; ++n) {
     (void)if_start_step(&s, &c, {0, 0}, 0, 0);
     ASSERT_EQ(s.current_q20, (n < 500) ? p.current_q20 / 500 * n : p.current_q20) << n;
@@ -294,11 +345,11 @@ TEST(IfStart, TheEmfAlongItsDirectionIsTheRotorsSpeed) {
       for (const double speed : {20.0, 125.7}) {
         const double way = backward ? -1.0 : 1.0;
         if_start_t s;
-        if_start_begin(&s, 0, backward);
+        if_start_begin(&s, &c, 0, backward);
         const Vector emf = {way * speed * m.flux * std::sin(lag), way * speed * m.flux * std::cos(lag)};
         for (int n = 0; n < 20000; ++n) {
           const double drop = m.rs * 8.0 * std::min((n + 1) / 500.0, 1.0);
-          if (n % 10 == 0) if_start_renew(&s, &c);
+          if (n % 10 == 0) if_start_renew(&s, &c, {0, 0});
           (void)if_start_step(&s, &c, raw_dq({emf.x + drop, emf.y}, 16), 0, 0);
         }
         const Vector along = {way * emf.x, way * emf.y + real(c.least_q16, 16)};
@@ -322,7 +373,7 @@ TEST(IfStart, WhatCountsAsAgreement) {
                {0.0, 1.26, false},  {0.0, -1.0, false}, {180.0, 1.0, false}};
   for (const auto& one : cases) {
     if_start_t s;
-    if_start_begin(&s, 0, false);
+    if_start_begin(&s, &c, 0, false);
     while (!if_start_is_up(&s, &c)) (void)if_start_step(&s, &c, {0, 0}, 0, 0);
     const auto see = [&](double degrees, double speed) {
       const std::uint32_t next = s.vector_bam + static_cast<std::uint32_t>(s.speed_bpp);

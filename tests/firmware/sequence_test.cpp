@@ -286,7 +286,8 @@ TEST_F(States, AFeaturesStateHasItsPlace) {
   NEEDS("commissioning");
   EXPECT_EQ(drive_states[DRIVE_START], &start_state);
   EXPECT_EQ(drive_states[DRIVE_COMMISSION], &commissioning_state);
-  for (const drive_state_t own : {DRIVE_BOOT, DRIVE_CALIBRATE, DRIVE_READY, DRIVE_RUN, DRIVE_STOP, DRIVE_FAULT})
+  EXPECT_EQ(drive_states[DRIVE_RUN] != nullptr, (start_phases[START_IF_RAMP] != nullptr));
+  for (const drive_state_t own : {DRIVE_BOOT, DRIVE_CALIBRATE, DRIVE_READY, DRIVE_STOP, DRIVE_FAULT})
     EXPECT_EQ(drive_states[own], nullptr) << own;
 }
 

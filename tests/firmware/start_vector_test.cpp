@@ -35,7 +35,7 @@ TEST_F(StartByVector, AVectorBeginsFromRest) {
     EXPECT_EQ(inside::seen().angle_bam, 0u);
     EXPECT_TRUE(inside::loop_is_closed());
     EXPECT_FALSE(polarity_watch.open);
-    EXPECT_EQ(if_ramp.backward, backward);
+    EXPECT_EQ(if_ramp.end_bpp < 0, backward);
   }
 }
 

@@ -132,10 +132,11 @@ def test_the_duty_is_scaled_to_its_motor():
 # ---- how it is judged
 
 TIME = np.arange(0.0, 1.0, 0.001)
+START, RUN = 3, 4  # firmware/interfaces/state.h
 ASKED = Run("case", "", 1.0, 3.0, ((0.0, "speed_ref_rpm", 100.0),), (), {}, {}, (Reached((0.5, 1.0), 10.0),))
 
 
-def ended(*, speed=100.0, off=0.0, fault=None, until=None, reason="", unfinished=None):
+def ended(*, speed=100.0, off=0.0, fault=None, until=None, reason="", unfinished=None, state=RUN):
     """A run whose true speed and true angle less the one in use (degrees) are constants, or (s, value) from then on."""
 
     def over(value):
@@ -143,6 +144,7 @@ def ended(*, speed=100.0, off=0.0, fault=None, until=None, reason="", unfinished
         return np.where(at <= TIME, after, 100.0 if value is speed else 0.0)
 
     signals = {"time": TIME, "true_speed": over(speed), "true_angle": np.radians(over(off)), "est_angle": 0.0 * TIME}
+    signals["state"] = state + 0.0 * TIME
     if unfinished is not None:
         signals["est_angle"][unfinished] = math.nan
     if until is not None:
@@ -166,6 +168,9 @@ def ended(*, speed=100.0, off=0.0, fault=None, until=None, reason="", unfinished
         (ended(off=(0.2, 180.0), fault=(0.15, "lost")), End.REFUSED, None, "lost"),
         (ended(unfinished=149, fault=(0.15, "lost")), End.REFUSED, None, "lost"),
         (ended(unfinished=148, fault=(0.15, "lost")), End.FAILED, 0.002, "; lost"),
+        (ended(unfinished=148), End.FAILED, None, "the drive had no angle"),
+        (ended(unfinished=148, state=START), End.GOOD, None, ""),  # a vector turns the rotor, and the drive says so
+        (ended(off=180.0, state=START), End.FAILED, None, "the rotor was 180° el. from where"),
         (ended(until=0.0, reason="fault during the start: polarity"), End.REFUSED, None, "polarity"),
         (ended(until=0.0, reason="the start procedure took longer than 3 s"), End.FAILED, None, "took longer"),
         (ended(reason="the watchdog reset the chip"), End.FAILED, None, "the watchdog reset the chip"),

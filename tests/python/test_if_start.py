@@ -79,3 +79,41 @@ def test_a_source_that_needs_an_alignment_is_refused():
     native = importlib.import_module("stillspin._core")
     with pytest.raises(ValueError, match="start_method"):
         native.check_parameters({"position_source": 0, "start_method": 1})
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_rotor_without_saliency_stands_under_load_and_turns_back(way, seed):
+    """The vector has it below if_speed, the observer above; the winding is a quarter warmer than the nameplate says."""
+    native = importlib.import_module("stillspin._core")
+    loaded = profile.load("bench", core.plant_schema(native), core.parameters(native), "B-SPM")
+    load = way * 2.2  # N m, of 7.8
+    result = native.run(
+        plant=profile.merged(loaded.plant, {"parameter_error": {"resistance": 0.25}}),
+        parameters={**loaded.parameters, "sensor_mismatch": 1.0},  # as commissioned: the winding is measured at rest
+        commands=[
+            (0.0, "speed_ref_rpm", way * 900.0),
+            (1.6, "speed_ref_rpm", 0.0),
+            (3.8, "speed_ref_rpm", way * -900.0),
+        ],
+        load=[(1.2, 0.0), (1.3, load)],
+        duration=6.0,
+        max_start=5.0,
+        record_every=10,
+        waveform=(0.0, 0.0, 1),
+        seed=seed,
+        progress=None,
+    )
+    assert result.completed, result.reason
+    signals = {name: np.asarray(result.signals[name]) for name in ("time", "true_speed", "est_angle", "torque")}
+    time, turned = signals["time"], way * signals["true_speed"]
+
+    def within(first, last):
+        return (time >= first) & (time < last)
+
+    assert np.max(np.abs(turned[within(1.5, 1.6)] - 900.0)) < 60.0
+    assert np.max(np.abs(turned[within(3.2, 3.8)])) < 10.0
+    assert np.mean(signals["torque"][within(3.2, 3.8)]) == pytest.approx(load, abs=0.15), "and what the cogging holds"
+    assert np.all(np.isnan(signals["est_angle"][within(3.2, 3.8)])), "it does not say an angle that it does not know"
+    assert np.max(np.abs(turned[within(5.7, 6.0)] + 900.0)) < 60.0
+    assert np.all(np.isfinite(signals["est_angle"][within(5.7, 6.0)]))

@@ -35,8 +35,8 @@ WRITERS: dict[str, tuple[str, ...]] = {
     # Of a period, in the order of the steps.
     "schedule": ("firmware/drive/schedule.c",),
     "samples": ("firmware/drive/sampling.", _SLICED, _SLICES),
-    "estimate.measured_q20": ("firmware/drive/position.c", _SLICES),
-    "estimate.selected": ("firmware/drive/position.c",),
+    "estimate.measured_q20": ("firmware/drive/position.", _SLICES),
+    "estimate.selected": ("firmware/drive/position.",),
     "estimate.seen": ("firmware/drive/position.h",),
     "estimate.seen_q20": ("firmware/drive/position.c",),
     "estimate.frames": ("firmware/drive/position.c",),

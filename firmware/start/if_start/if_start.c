@@ -4,22 +4,40 @@
 // A flux source that takes over above flux_high has the shaft alone: its integral begins when the vector has reached
 // its speed, with the flux that the vector lets expect. Below, and with the other sources, the shaft is seen from the
 // end of the vector's rest on.
+//
+// A rotor with next to no saliency is seen by its EMF alone. Below if_speed the vector takes it back from RUN, bears
+// its load, and turns it as slowly as is commanded, or through standstill.
 
 #include "firmware/start/if_start/if_start.h"
 
 #include <stddef.h>
 
+#include "estimators/voltage_match.h"
 #include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/polarity_watch.h"
 #include "firmware/drive/position.h"
 #include "firmware/mode/mode.h"
+#include "hal/qmath/qcall.h"
+#include "hal/qmath/qtrig.h"
+
+#define BAM_PER_RAD 683565276L  // a half lags by 30 degrees, not by 29
 
 if_start_t if_ramp;
+
+// The EMF alone shows the rotor, and not at this speed.
+static bool is_too_slow(int32_t speed_bpp) { return if_is_blind && qc_abs_sat(speed_bpp) < if_ramp_config.speed_bpp; }
+
+// A vector that took over a rotor turns it as it is commanded, or as fast as the source takes it back.
+static int32_t end_bpp(const drive_t* d) {
+  const int32_t target_bpp = d->control.target_bpp;
+  if (is_too_slow(target_bpp)) return target_bpp;
+  return (target_bpp < 0) ? -if_ramp_config.speed_bpp : if_ramp_config.speed_bpp;
+}
 
 static void begin_if_ramp(drive_t* d) {
   if (!start_begin_standstill(d)) return;
   position_look_away(&d->estimate);
-  if_start_begin(&if_ramp, 0, d->control.target_bpp < 0);
+  if_start_begin(&if_ramp, &if_ramp_config, 0, d->control.target_bpp < 0);
   current_controller_reset(&d->control.current);
   d->control.references.closed = true;
   polarity_watch_end();
@@ -29,13 +47,19 @@ static void begin_if_ramp(drive_t* d) {
   start_enter(START_IF_RAMP);
 }
 
+// Whether the source has anything to see: not while the vector rests, nor on the way through standstill.
+static bool sees(const if_start_t* ramp) {
+  const bool slow = ramp->took_over && is_too_slow(2 * ramp->speed_bpp);
+  return ramp->tick >= if_ramp_config.align_periods && !slow;
+}
+
 // Whether the source looks on in this period. At rest the angle is the vector's: a saliency has two.
 static bool looks_on(const drive_t* d, drive_estimate_t* e, const if_start_t* ramp) {
   if (position_observer_rests(d) && !if_start_is_up(ramp, &if_ramp_config)) {
     if (d->source->follow != NULL) d->source->follow(d, &e->selected);
     return false;
   }
-  if (ramp->tick >= if_ramp_config.align_periods) return true;
+  if (sees(ramp)) return true;
   position_preset(d, e, e->selected.angle_bam, e->selected.speed_bpp);
   return false;
 }
@@ -69,9 +93,23 @@ static void take_over(drive_t* d) {
   d->flags.spins = behind == DRIVE_COMMISSION;
 }
 
+// A winding at rest has no EMF: what the vector's voltage is more than expected is its resistance, cold or warm. Where
+// the rotor is seen by its EMF alone, its speed is known by that. It has to be known what devices and dead time take:
+// sensors that are matched say that a commissioning has measured them all.
+static void take_resistance(drive_t* d) {
+  const int32_t left = if_ramp_config.align_periods - if_ramp.tick;
+  const bool measures = if_is_blind && d->config.sensor_mismatch_q30 != 0;
+  if (!measures || left <= 0 || left > (int32_t)DRIVE_PERIODS_PER_MS) return;
+  voltage_match_resistance(&d->estimate.model, q_div(if_ramp.mean_q16.d, if_ramp.current_q20, 28));
+}
+
 static start_phase_t step_if_ramp(drive_t* d) {
   const estimator_output_t* const seen = &d->estimate.seen;
-  if (d->schedule.task == TASK_FIELD) if_start_renew(&if_ramp, &if_ramp_config);
+  if (d->schedule.task == TASK_FIELD) {
+    if (if_ramp.took_over) if_ramp.end_bpp = end_bpp(d);
+    take_resistance(d);
+    if_start_renew(&if_ramp, &if_ramp_config, d->control.command_q16);
+  }
   const if_start_result_t result =
       if_start_step(&if_ramp, &if_ramp_config, d->control.command_q16, seen->angle_bam, seen->speed_bpp);
   d->control.references.current_q20.d = if_ramp.current_q20;
@@ -82,3 +120,41 @@ static start_phase_t step_if_ramp(drive_t* d) {
 }
 
 const phase_t if_ramp_phase = {begin_if_ramp, step_if_ramp, estimate_if_ramp};
+
+// The frame that is controlled in moves ahead: what the controllers have summed up stays where it is.
+static void turn_controllers(current_controller_t* c, uint32_t ahead_bam) {
+  const dq_t until_now_q20 = {c->d.integral_q20, c->q.integral_q20};
+  const dq_t then_q20 = frame_moved(until_now_q20, ahead_bam);
+  c->d.integral_q20 = then_q20.d;
+  c->q.integral_q20 = then_q20.q;
+}
+
+// The vector is so long that it bears twice the load, and so far ahead of the rotor that it bears just this.
+static void take_rotor(drive_t* d) {
+  const estimator_output_t* const now = &d->estimate.selected;
+  const int32_t load_q20 = qc_mul_sat(now->load_accel_q8, d->estimate.model.torque_per_accel_q24, 20);
+  const int32_t limit_q20 = d->config.values.current_limit;
+  const int32_t q_q20 = q_limit(qc_over(load_q20, d->control.per_torque_constant, 24), limit_q20);
+  const int32_t length_q20 = q_clamp(qc_shl_sat(qc_abs_sat(q_q20), 1), if_ramp_config.current_q20, limit_q20);
+  const uint32_t ahead_bam = (uint32_t)qc_mul_sat(q_div(q_q20, length_q20, 24), BAM_PER_RAD, 24);
+  turn_controllers(&d->control.current, ahead_bam);
+  if_start_begin_turning(&if_ramp, &if_ramp_config, now->angle_bam + ahead_bam, length_q20, now->speed_bpp);
+  if_ramp.end_bpp = end_bpp(d);
+  position_turn(&d->estimate, ahead_bam);
+  d->control.references.current_q20.d = length_q20;
+  d->control.references.current_q20.q = 0;
+}
+
+// Without saliency a rotor is lost near standstill: the vector takes it there, and through.
+static void step_run(drive_t* d) {
+  const int32_t now_bpp = d->control.ramp.value;
+  const int32_t target_bpp = d->control.target_bpp;
+  if (!is_too_slow(now_bpp) || (!is_too_slow(target_bpp) && (target_bpp ^ now_bpp) >= 0)) return;
+  take_rotor(d);
+  start_return(d);
+  polarity_watch_end();
+  d->flags.open_loop = true;
+  start_enter(START_IF_RAMP);
+}
+
+const state_t if_run_state = {NULL, step_run, NULL, NULL};

@@ -12,7 +12,11 @@ extern if_start_t if_ramp;
 /// Its constants in use.
 extern if_start_config_t if_ramp_config;
 
+/// The rotor has next to no saliency: below if_speed the vector keeps it, or takes it back.
+extern bool if_is_blind;
+
 extern const phase_t if_ramp_phase;
+extern const state_t if_run_state;
 extern const config_part_t if_ramp_part;
 
 #endif

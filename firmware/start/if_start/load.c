@@ -7,6 +7,7 @@
 #include "hal/qmath/qcall.h"
 
 if_start_config_t if_ramp_config;
+bool if_is_blind;
 
 static if_start_config_t made;
 
@@ -25,6 +26,8 @@ static packed_text_t make(drive_config_t* c) {
 static void take(void) {
   if_ramp_config = made;
   start_ways.open_loop = parameters.start_method != 0;
+  // Lq less than an eighth above Ld.
+  if_is_blind = start_ways.open_loop && parameters.inductance_q - parameters.inductance_d < parameters.inductance_d / 8;
 }
 
 const config_part_t if_ramp_part = {make, take, NULL};

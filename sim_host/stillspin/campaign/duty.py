@@ -7,12 +7,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from stillspin import core
+from stillspin.cases import open_loop
 from stillspin.cases.profile import Profile
 from stillspin.cases.scenario import Reached, Run
 from stillspin.entry import Entry
 
 NOMINAL_LOAD = 0.5  # of the rated torque, where nothing departs
 _SPEED = 0.3  # of what link, flux and the drive's limit allow without field weakening
+_SEEN = 1.5  # of if_speed, at least, where the EMF alone shows the rotor: room for the load's dip
 _BEGIN, _LOADED, _STEP = 0.1, 0.2, 0.005  # s: to the first command; from the speed to the load; its rise
 _SETTLE, _HELD = 0.4, 0.2  # s: from a load or a ramp's end until the shaft has to be there, and how long
 _MARGIN = 0.01  # s before the next command
@@ -22,20 +24,26 @@ _RECORD = 10  # PWM periods: 1 ms
 
 @dataclass(frozen=True)
 class Duty:
-    """What is asked of a motor. speed: rpm; torque: rated, N m; ramp: s from rest to the speed."""
+    """What is asked of a motor.
+
+    Attributes:
+        speed: rpm; torque: rated, N m; ramp: s from rest to the speed.
+        turn: s more where a current vector takes the rotor through standstill.
+    """
 
     speed: float
     torque: float
     ramp: float
+    turn: float = 0.0
 
     @property
     def duration(self) -> float:
         """Seconds from the end of the start procedure."""
-        return whole_periods(self._back + 2.0 * self.ramp + _SETTLE + _HELD)
+        return whole_periods(self._back + 2.0 * self.ramp + self.turn + _SETTLE + _HELD)
 
     @property
     def _load_at(self) -> float:
-        return whole_periods(_BEGIN + self.ramp + _LOADED)
+        return whole_periods(_BEGIN + self.ramp + self.turn + _LOADED)
 
     @property
     def _back(self) -> float:
@@ -77,8 +85,11 @@ def of(profile: Profile, schema: core.Schema, known: Mapping[str, Entry]) -> Dut
     torque = 1.5 * pairs * flux * plate("machine", "rated_peak_current")
     volts = plate("link", "source_voltage") / math.sqrt(3.0) * told("voltage_use") / 100.0
     base = volts / max(flux, 1e-6) / pairs * 30.0 / math.pi
-    speed = float(f"{_SPEED * min(base, told('speed_limit')):.2g}")
+    turned = told("start_method") == 1.0
+    slowest = _SEEN * told("if_speed") if turned else 0.0
+    speed = float(f"{max(_SPEED * min(base, told('speed_limit')), slowest):.2g}")
     # What the nominal load leaves of the torque, half of it: a heavier shaft has to follow as well.
     spare = 0.5 * (1.0 - NOMINAL_LOAD) * torque / plate("mechanics", "inertia") * 30.0 / math.pi
     ramp = speed / min(told("speed_ramp"), spare) if spare > 0.0 else speed / told("speed_ramp")
-    return Duty(speed, torque, round(ramp, 3))
+    turn = open_loop.turn_time(told("if_speed"), told("if_acceleration")) if turned else 0.0
+    return Duty(speed, torque, round(ramp, 3), round(turn, 3))

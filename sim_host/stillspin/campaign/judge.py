@@ -16,6 +16,7 @@ from stillspin.measure.pieces import as_floats
 
 CAUGHT = 0.020
 """Seconds within which the drive has to be off after the shaft went wrong."""
+_START = 3  # signal `state` (firmware/interfaces/state.h)
 _IN_WORDS = ("fault during the start: ", "the drive refused ")
 """How reasons begin that are the drive's own, before it ran."""
 
@@ -118,8 +119,10 @@ def _first_wrong(signals: Signals, run: Run) -> tuple[float, str] | None:
 
 def _lost(signals: Signals) -> tuple[float, str] | None:
     off = np.abs(position_error(signals))
+    # A drive that says that a vector turns the rotor says that it knows no angle.
+    turned = np.isnan(off) & (as_floats(signals["state"]) == _START)
     # Written so that an angle that is not a number counts as lost.
-    first = _first(~(off <= LOST))
+    first = _first(~((off <= LOST) | turned))
     if first is None:
         return None
     if not np.isfinite(off[first]):

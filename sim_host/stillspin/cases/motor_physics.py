@@ -47,9 +47,9 @@ def _turned(motor: Described, share: float) -> Finding:
     current, speed = motor.told("if_current"), motor.told("if_speed")
     carried = 1.5 * motor.plant("machine", "pole_pairs") * motor.plant("machine", "magnet_flux") * current
     words = (
-        f"Lq and Ld differ by {abs(share):.1%} of their sum: at rest the angle is not known, and no load is held "
-        f"there; {current:.3g} A turn the shaft, against up to {carried:.2g} N m, to {speed:.0f} rpm, "
-        "where the EMF shows it: command no less"
+        f"Lq and Ld differ by {abs(share):.1%} of their sum: at rest the angle is not known; below {speed:.0f} rpm, "
+        f"where the EMF shows it, {current:.3g} A turn the shaft or hold it, against up to {carried:.2g} N m that come "
+        "slowly"
     )
     linked = motor.plant("machine", "magnet_flux") / motor.plant("machine", "inductance_q")
     if current > linked:

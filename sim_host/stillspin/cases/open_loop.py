@@ -11,11 +11,13 @@ from collections.abc import Mapping
 
 SALIENCY_LEAST = 1.0 / 15.0
 """(Lq - Ld)/(Lq + Ld) below which nothing shows the axis at rest, as commissioning has it: Lq an eighth above Ld."""
-_EMF_SHARE = 0.08  # of the link's voltage, at the vector's last speed
+_EMF_SHARE = 0.10  # of the link's voltage, at the vector's last speed
 _SPIN_SHARE = 0.145  # the same in the spin, at most: the pulses alternate up to some 0.17
+_SPIN_MOST = 0.6  # of speed_limit
 _FLUX_SHARE = 0.5  # L I of the vector, of the magnet's flux: beyond that it is hardly damped (control/if_start.h)
 _TORQUE_SHARE = 0.1  # of the vector's torque, for its own acceleration and that behind it
 _RISE_TIME = 0.6  # s, to the last speed
+_AGREES = 0.3  # s that the position source has to agree with the vector before it takes over
 _SPEEDS = (10.0, 6000.0)  # rpm, that the parameter takes
 _SPIN = (30.0, 20000.0)
 _RAMP_MOST = 3000.0  # rpm/s, the drive's default
@@ -69,7 +71,7 @@ def following(told: Mapping[str, float], volts: float) -> dict[str, float]:
     if told.get("inertia"):
         ramp = min(ramp, _TORQUE_SHARE * rpm(torque / told["inertia"]))
     slope = min(speed / _RISE_TIME, ramp)
-    spin = min(max(_SPIN_SHARE / _EMF_SHARE * speed, _SPIN[0]), _SPIN[1])
+    spin = min(max(spin_most(volts, flux, pairs), _SPIN[0]), _SPIN_MOST * told["speed_limit"], _SPIN[1])
     return {
         "start_method": 1.0,
         "if_current": round(current, 2),
@@ -78,6 +80,11 @@ def following(told: Mapping[str, float], volts: float) -> dict[str, float]:
         "spin_speed": float(round(spin)),
         "speed_ramp": float(max(round(ramp), 10)),
     }
+
+
+def turn_time(speed: float, slope: float) -> float:
+    """Seconds at most that the vector needs from one direction of `if_speed` to the other, both in rpm (and per s)."""
+    return 2.0 * speed / slope + _AGREES
 
 
 def rpm(speed: float) -> float:

@@ -47,8 +47,8 @@ def commission(
     print(f"they are in {out} and in no drive: 'stillspin params load {out} --save' puts them into one")
     if result.told.get("start_method") == 1.0:
         print(
-            "the motor shows next to no saliency: at rest its angle is not known and no load is held; a current vector "
-            "turns it at the start (if_current, if_speed), and below if_speed it is not to be run"
+            "the motor shows next to no saliency: at rest its angle is not known; a current vector (if_current) turns "
+            "it at the start and below if_speed, and bears loads there that come slowly"
         )
     for value in result.refused:
         print(f"stillspin: {value.name} keeps its value: {value.words}", file=sys.stderr)

@@ -101,7 +101,7 @@ def _held(rated: Ratings, kind: str, share: float) -> Duty:
     """The rated torque, or what the drive says that it can bear there, comes at a speed, stays, and goes."""
     torque = rated.load_at(share * rated.speed)
     speed, rise = share * rated.speed, max(rated.run_up + rated.electrical, 0.005)
-    at = _BEGIN + speed / rated.ramp + _SETTLE
+    at = _up(rated, speed) - _HELD
     gone = at + rise + _SETTLE + _HELD
     load = ((at, 0.0), (at + rise, torque), (gone, torque), (gone + rise, 0.0))
     end = gone + rise + _SETTLE + _HELD
@@ -117,9 +117,8 @@ def _held(rated: Ratings, kind: str, share: float) -> Duty:
 
 
 def _through_zero(rated: Ratings) -> Duty:
-    up = rated.speed / rated.ramp
-    back = _BEGIN + up + _SETTLE + _HELD
-    end = back + 2.0 * up + _SETTLE + _HELD
+    back = _up(rated, rated.speed)
+    end = back + 2.0 * rated.speed / rated.ramp + rated.turn + _SETTLE + _HELD
     there = Reached((whole_periods(back - _HELD), whole_periods(back - 0.01)), _band(rated, rated.speed))
     commands = ((_BEGIN, rated.speed), (back, -rated.speed))
     reached = (there, _within(rated, -rated.speed, end))
@@ -145,7 +144,7 @@ def _standing(rated: Ratings) -> Run:
 
 
 def _up(rated: Ratings, speed: float) -> float:
-    return whole_periods(_BEGIN + abs(speed) / rated.ramp + _SETTLE + _HELD)
+    return whole_periods(_BEGIN + abs(speed) / rated.ramp + rated.turn + _SETTLE + _HELD)
 
 
 def _within(rated: Ratings, speed: float, end: float) -> Reached:

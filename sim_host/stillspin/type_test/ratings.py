@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from stillspin.cases import open_loop
 from stillspin.cases.motor_told import Described
 from stillspin.cases.open_loop import rpm, share
 
@@ -24,6 +25,7 @@ class Ratings:
         electrical: Lq / R.
         ramp: rpm/s that the drive's own ramp and half of the rated torque allow.
         slowest: below it the drive knows no angle; 0 where the saliency shows it at rest.
+        turn: s that a current vector then takes through standstill, at most; else 0.
         cogging: N m, peak.
         saturates: which alone tells the polarity of a shaft that a brake holds.
         slow_torque: of the current up to which the saliency is there; the drive gives no more below `even` rpm, and
@@ -41,6 +43,7 @@ class Ratings:
     electrical: float
     ramp: float
     slowest: float
+    turn: float
     cogging: float
     saturates: bool
     slow_torque: float
@@ -69,7 +72,7 @@ def of(motor: Described, *, mapped: bool = False) -> Ratings:
     torque, limit = 1.5 * pairs * flux * current, motor.told("speed_limit")
     speed = min(limit, _SPARE * rpm(_loaded(volts, flux, resistance * current, inductance_q * current)) / pairs)
     weakened = flux - motor.plant("machine", "inductance_d") * motor.told("weakening_limit")
-    open_loop = motor.told("start_method") == 1.0
+    turned = motor.told("start_method") == 1.0
     salient, most = motor.told("saliency_current"), motor.told("current_limit")
     even = share(motor.plant("machine", "inductance_d"), inductance_q) / 6.0
     per_share = rpm(motor.plant("link", "source_voltage") / flux / pairs)
@@ -80,7 +83,8 @@ def of(motor: Described, *, mapped: bool = False) -> Ratings:
         run_up=inertia * speed * math.pi / 30.0 / torque,
         electrical=inductance_q / resistance,
         ramp=min(motor.told("speed_ramp"), rpm(0.5 * torque / inertia)),
-        slowest=motor.told("if_speed") if open_loop else 0.0,
+        slowest=motor.told("if_speed") if turned else 0.0,
+        turn=open_loop.turn_time(motor.told("if_speed"), motor.told("if_acceleration")) if turned else 0.0,
         cogging=motor.plant("mechanics", "cogging_torque"),
         saturates=mapped or bool(motor.plant("machine", "saturation")),
         slow_torque=1.5 * pairs * flux * (salient or most),
