@@ -7,9 +7,9 @@
 #define SHIFT_MAX_BAM 536870912L  // 45 degrees
 #define MEAN_SHIFT 10u            // 100 ms
 #define FILTER_LEAST 3u
-#define AWAY_SHARE 16  // of the EMF below which no direction is seen: twice that of the last speed
-#define AWAY_MS 50     // a current that changes takes less
 #define FILTER_MOST 8u
+#define AWAY_SHARE 16  // times least_q16, an eighth of the EMF at the last speed: twice that
+#define AWAY_MS 50     // a change of current takes less
 
 // Lq I/(lambda w0) in periods, as the next power of two.
 static uint16_t filter_shift(const if_start_config_t* c, const machine_model_t* m) {
@@ -55,6 +55,7 @@ void if_start_begin_turning(if_start_t* s, const if_start_config_t* c, uint32_t 
   if_start_begin(s, c, angle_bam, speed_bpp < 0);
   s->took_over = true;
   s->vector_bam = angle_bam;
+  s->angle_bam = angle_bam;
   s->current_q20 = current_q20;
   s->tick = c->align_periods;
   s->speed_bpp = speed_bpp;

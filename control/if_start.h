@@ -13,10 +13,9 @@
 // gains with frequency up to the current control's and swings there. So w~ is filtered over Lq I/(lambda w0) at least;
 // where Lq I is more than half of lambda, that leaves little damping.
 //
-// It may take over a rotor that turns as well, to keep it where the source sees nothing, or to turn it through
-// standstill: then it goes where `end_bpp` says, either way.
-//
-// One that a load has pulled out of step runs away: an EMF of twice the last speed for 50 ms is the end.
+// A vector can also take over a rotor that turns, to keep it where the source sees nothing or to turn it through
+// standstill. It then goes to `end_bpp`, in either direction. If the load pulls that rotor out of step it runs away: an
+// EMF of twice that of the last speed, for 50 ms, is a failure.
 //
 // The source takes over when for 300 ms it has been within 80 degrees of the vector and within a quarter of its speed.
 
@@ -79,8 +78,8 @@ static inline bool if_start_is_up(const if_start_t* s, const if_start_config_t* 
   return q_abs_sat(s->speed_bpp) >= c->speed_bpp;
 }
 
-/// What changes slowly: once in a millisecond. Before the first time no speed is made of the EMF. voltage: as of a
-/// step.
+/// What changes slowly: once in a millisecond. Before the first time no speed is made of the EMF. voltage: command in
+/// the last period, V.
 void if_start_renew(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16);
 
 /// One period. voltage: command in the last one, V; seen: angle and speed of the source.

@@ -23,7 +23,7 @@
 typedef struct {
   int32_t order;      // n, waves per electrical turn; 0: no cogging is assumed
   int32_t crawl_bpp;  // at least 1: learns below this speed, is taken into account below three times it
-  int32_t bound_q8;   // largest amplitude believed, up to COGGING_BOUND_END_Q8: what a load may change by in 10 ms
+  int32_t bound_q8;   // largest amplitude believed, up to COGGING_BOUND_END_Q8
 } cogging_config_t;
 
 typedef struct {

@@ -202,6 +202,7 @@ static bool load_position(drive_config_t* c) {
                                                 c->mapped};
   deviation_observer_design(&c->observer, &c->nameplate, &observer);
   c->observer.cogging.order = p->cogging_order;
+  // Cogging is no larger than what a load is expected to change by.
   c->observer.cogging.bound_q8 =
       q_min(qc_mul_sat(c->nameplate.accel_q12, p->observer_load_rate, 24), COGGING_BOUND_END_Q8);
   c->observer.zero_vectors_only = p->observer_windows == 0;

@@ -36,7 +36,7 @@ void position_keep(const drive_t* d, drive_estimate_t* e);
 
 /// The frame in use moves ahead of where it was; the source goes on seeing what it saw.
 static inline void position_turn(drive_estimate_t* e, uint32_t ahead_bam) {
-  e->seen = e->selected;
+  position_look_away(e);
   e->selected.angle_bam += ahead_bam;
   e->measured_q20 = frame_moved(e->measured_q20, ahead_bam);
 }

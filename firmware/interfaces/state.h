@@ -23,7 +23,7 @@ typedef enum {
 typedef struct {
   /// From READY: what is to follow when it has done its work. It enters its state, or raises a fault.
   void (*begin)(struct drive* d, drive_state_t behind);
-  /// One period. It enters the state that follows.
+  /// One period; in RUN, once in a millisecond. It enters the state that follows.
   void (*step)(struct drive* d);
   /// Angle and speed in use, in the place of the position source: in the open-loop ramp, and at the standstill of
   /// COMMISSION.

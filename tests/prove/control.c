@@ -87,7 +87,7 @@ static void any_vector(if_start_t* s, const if_start_config_t* c) {
   s->rotor_bpp = any_i32;
   s->mean_bpp = any_i32;
   s->agreed = any_from(0, IF_START_AGREED - 1);
-  s->waited = any_from(-51, c->wait_periods);
+  s->waited = any_from(-50, c->wait_periods);
   s->sign = any_from(-1, 1);
 }
 

@@ -61,7 +61,8 @@ bool speed_controller_init(speed_controller_t* s, const speed_controller_config_
     requires VECTOR_DQ(voltage_q16, TURN_COMMAND_END_Q16);
     assigns *s, \result \from *s, *c, voltage_q16, seen_bam, seen_bpp;
     ensures VECTOR_DQ(s->mean_q16, TURN_EMF_END_Q16) && WITHIN(s->drop_q16, TURN_DROP_END_Q16);
-    ensures WITHIN(s->speed_bpp, TURN_MAX_BPP) && FROM_TO(s->tick, 0, 65536) && FLAG(s->backward);
+    ensures WITHIN(s->speed_bpp, TURN_MAX_BPP) && FROM_TO(s->tick, 0, 65536) && FLAG(s->took_over);
+    ensures WITHIN(s->end_bpp, TURN_MAX_BPP) && FROM_TO(s->sign, -1, 1) && FROM_TO(s->waited, -51, 100001);
     ensures FROM_TO(s->current_q20, 0, 200 * AMPERES_Q20); ensures FROM_TO(\result, 0, 2); */
 if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16, uint32_t seen_bam,
                                 int32_t seen_bpp);

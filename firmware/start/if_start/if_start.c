@@ -20,7 +20,7 @@
 #include "hal/qmath/qcall.h"
 #include "hal/qmath/qtrig.h"
 
-#define BAM_PER_RAD 683565276L  // a half lags by 30 degrees, not by 29
+#define BAM_PER_RAD 683565276L  // the sine for its angle: at a half, the most, 29 degrees for 30
 
 if_start_t if_ramp;
 

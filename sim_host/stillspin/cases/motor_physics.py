@@ -48,8 +48,8 @@ def _turned(motor: Described, share: float) -> Finding:
     carried = 1.5 * motor.plant("machine", "pole_pairs") * motor.plant("machine", "magnet_flux") * current
     words = (
         f"Lq and Ld differ by {abs(share):.1%} of their sum: at rest the angle is not known; below {speed:.0f} rpm, "
-        f"where the EMF shows it, {current:.3g} A turn the shaft or hold it, against up to {carried:.2g} N m that come "
-        "slowly"
+        f"where the EMF shows it, a vector of {current:.3g} A turns or holds the shaft, against a slowly changing "
+        f"load of up to {carried:.2g} N m"
     )
     linked = motor.plant("machine", "magnet_flux") / motor.plant("machine", "inductance_q")
     if current > linked:

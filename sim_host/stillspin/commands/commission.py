@@ -48,7 +48,7 @@ def commission(
     if result.told.get("start_method") == 1.0:
         print(
             "the motor shows next to no saliency: at rest its angle is not known; a current vector (if_current) turns "
-            "it at the start and below if_speed, and bears loads there that come slowly"
+            "it at the start and below if_speed, and carries slowly changing loads there"
         )
     for value in result.refused:
         print(f"stillspin: {value.name} keeps its value: {value.words}", file=sys.stderr)
