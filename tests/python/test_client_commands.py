@@ -23,7 +23,7 @@ from screen import terminal
 
 from stillspin import csv_table, mdf
 from stillspin.commands import braille, capture_file
-from stillspin.commands.completion import Words
+from stillspin.commands.completion import COMMANDS, ConsoleWords
 from stillspin.commands.transcript import LINE, Transcript
 from stillspin.drive import Capture, Trigger
 from stillspin.drive.requester import wait_until
@@ -378,7 +378,7 @@ def test_a_line_that_is_too_long_is_known_by_what_the_console_shows_of_it():
 
 
 def completions(table, text):
-    return [c.text for c in Words(table).get_completions(Document(text), None)]
+    return [c.text for c in ConsoleWords(table, COMMANDS).get_completions(Document(text), None)]
 
 
 def test_completion_knows_the_drives_own_names(drive):

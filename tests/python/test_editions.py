@@ -8,7 +8,7 @@ from typing import Any
 import cantools
 import pandas as pd
 import pytest
-from by_edition import DESK, on
+from by_edition import DESK, on, switch_on
 from desk import board
 from own_edition import LOADED, ROOT, linked
 
@@ -136,6 +136,29 @@ def test_what_is_left_out_is_refused_by_its_edition() -> None:
     assert "measures machine" not in said
     assert "switches the power stage on" in said, "what is there is explained"
     assert "there is no command 'scopes': see 'help'" in said.split("suggested:")[1]
+
+
+OFFERED = """
+from prompt_toolkit.document import Document
+from stillspin.commands.completion import ConsoleWords, commands_of
+from stillspin.commands.connection import opened
+with opened("virtual:") as drive:
+    words = ConsoleWords(drive.table, commands_of(drive))
+    for begun in ("", "get flux_", "set can_", "signals load_", "scope speed"):
+        print(*(offered.text for offered in words.get_completions(Document(begun), None)), sep=",")
+"""
+
+
+@pytest.mark.parametrize("edition", ["lab", "drive", "hil", "minimal"])
+def test_tab_offers_what_the_drives_own_help_lists(edition: str, tmp_path: Path) -> None:
+    """Commands, parameters and signals; of a command that is left out no argument either."""
+    listed = {line.split()[0] for line in switch_on(edition, tmp_path / "memory", "help") if line[:1].islower()}
+    commands, fluxes, can_ids, loads, scoped = (line.split(",") for line in on(edition, "-c", OFFERED).splitlines())
+    assert set(commands) == listed
+    assert ("flux_low" in fluxes) == (edition == "lab")
+    assert ("can_node" in can_ids) == (edition != "minimal")
+    assert ("load_angle" in loads) == (edition == "lab") and "load_torque" in loads
+    assert ("speed_reference" in scoped) == (edition != "minimal")
 
 
 ASKED = """

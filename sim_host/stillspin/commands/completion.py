@@ -1,12 +1,14 @@
-"""Completion of the console's commands, from the drive's own table."""
+"""Completion of the console's commands, from the drive's own table: what its edition has not is not offered."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from prompt_toolkit.completion import CompleteEvent, Completer, Completion
 from prompt_toolkit.document import Document
 
+from stillspin.drive import Drive
+from stillspin.drive.protocol import Words
 from stillspin.drive.table import Table
 
 COMMANDS = {
@@ -32,15 +34,37 @@ COMMANDS = {
     "commission": "measure machine and inverter",
     "version": "version of the firmware",
 }
+_PART_OF = {
+    "look": Words.LOOK,
+    "save": Words.STORE,
+    "load": Words.STORE,
+    "defaults": Words.STORE,
+    "scope": Words.SCOPE,
+    "can": Words.CAN,
+    "commission": Words.COMMISSIONING,
+}
+"""Commands of a part that an edition may leave out, and words that only a drive with that part says."""
 _OF_PARAMETERS = {"get", "set", "list"}
 _OF_SIGNALS = {"scope", "signals", "watch"}
 
 
-class Words(Completer):
+def commands_of(drive: Drive) -> dict[str, str]:
+    """The commands that the drive's console has, each with what it does."""
+    parts = {part: drive.has_words(part) for part in set(_PART_OF.values())}
+    return {name: meaning for name, meaning in COMMANDS.items() if name not in _PART_OF or parts[_PART_OF[name]]}
+
+
+class ConsoleWords(Completer):
     """The first word is a command, the next ones are parameters or signals."""
 
-    def __init__(self, table: Table) -> None:
-        self._table = table
+    def __init__(self, table: Table, commands: Mapping[str, str]) -> None:
+        """Take what there is to offer.
+
+        Args:
+            table: of the drive.
+            commands: of its console, with their meanings.
+        """
+        self._table, self._commands = table, commands
 
     def get_completions(self, document: Document, complete_event: CompleteEvent) -> Iterable[Completion]:
         """See prompt_toolkit."""
@@ -52,7 +76,9 @@ class Words(Completer):
     def _candidates(self, words: list[str]) -> Iterable[tuple[str, str]]:
         command, position = words[0], len(words)
         if position == 1:
-            yield from COMMANDS.items()
+            yield from self._commands.items()
+        elif command not in self._commands:
+            return
         elif command in _OF_PARAMETERS and position == 2:
             for parameter in self._table.parameters:
                 yield parameter.name, f"{parameter.range_text}; {parameter.meaning}"

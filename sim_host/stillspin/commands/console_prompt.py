@@ -13,7 +13,7 @@ from prompt_toolkit.history import FileHistory, History, InMemoryHistory
 from prompt_toolkit.patch_stdout import patch_stdout
 
 from stillspin import resources
-from stillspin.commands.completion import Words
+from stillspin.commands.completion import ConsoleWords, commands_of
 from stillspin.commands.console_session import Session
 from stillspin.commands.transcript import Transcript, as_sent
 from stillspin.drive import Drive
@@ -34,7 +34,7 @@ def talk(drive: Drive, current: Session) -> None:
         "stillspin> ",
         history=_history(),
         auto_suggest=AutoSuggestFromHistory(),
-        completer=Words(drive.table),
+        completer=ConsoleWords(drive.table, commands_of(drive)),
         complete_while_typing=False,
     )
     bar = _Bar(drive, terminal, stop)

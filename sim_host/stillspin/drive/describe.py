@@ -125,7 +125,7 @@ def table(ask: Ask, who: Identity, progress: Callable[[float], None] | None = No
 
 def faults(ask: Ask, who: Identity) -> list[int]:
     """Numbers of the faults that the drive's edition has."""
-    return [code for code in range(who.faults) if _has(ask, Words.FAULT, code)]
+    return [code for code in range(who.faults) if has(ask, Words.FAULT, code)]
 
 
 _PARTS = {
@@ -139,10 +139,10 @@ _PARTS = {
 
 def left_out(ask: Ask) -> list[str]:
     """Parts that the drive's edition has not, for people."""
-    return [part for kind, part in _PARTS.items() if not _has(ask, kind, 0)]
+    return [part for kind, part in _PARTS.items() if not has(ask, kind)]
 
 
-def _has(ask: Ask, kind: Words, code: int) -> bool:
+def has(ask: Ask, kind: Words, code: int = 0) -> bool:
     """Whether the drive's edition has a word of this kind, as far as it says."""
     try:
         ask(Request.WORDS, struct.pack("<BB", kind, code))

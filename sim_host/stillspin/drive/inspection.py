@@ -76,6 +76,10 @@ class Inspection:
         """Parts of the firmware that its edition has not, for people."""
         return describe.left_out(self._ask)
 
+    def has_words(self, kind: Words) -> bool:
+        """Whether its edition has the part of the firmware that says these words, as far as it tells."""
+        return describe.has(self._ask, kind)
+
     def has_faults(self) -> list[int]:
         """Numbers of the faults that its edition has."""
         return describe.faults(self._ask, self.identity)
