@@ -27,7 +27,7 @@ class Reload : public Drive {
   static void reload() {
     drive_parameters_changed();
     background_step(&drive);
-    EXPECT_FALSE(inside::request().reload);
+    EXPECT_FALSE(inside::reload_requested());
   }
 };
 
@@ -120,8 +120,8 @@ class Inertia : public Drive {
     inside::config().mapped = true;
     parameters.inertia_adapt = 1;
     use_source(POSITION_OBSERVER);
-    inside::speed_ramp().value = inside::selected().speed_bpp = bpp_of(100);
-    inertia_match.reference_bpp = inside::speed_ramp().value;
+    inside::ramped_bpp() = inside::selected().speed_bpp = bpp_of(100);
+    inertia_match.reference_bpp = inside::ramped_bpp();
   }
   static double acceleration_limit() {
     const Motor m;
@@ -133,7 +133,7 @@ class Inertia : public Drive {
     inertia_match_t& s = inertia_match;
     inertia_match_reset(&s);
     s.phase = INERTIA_RUN_UP;
-    s.reference_bpp = inside::speed_ramp().value - 1000;
+    s.reference_bpp = inside::ramped_bpp() - 1000;
     s.ms = 99;
     s.before_q24 = s.ratio_q24;
     s.start_base_q8 = raw(1000.0, 8);
@@ -143,7 +143,7 @@ class Inertia : public Drive {
     s.expected = raw(4.0, 24);
     s.turned = raw(8.0, 24);
     s.next = raw(4.0, 24);
-    inside::speed_ramp().value = bpp_of(900);
+    inside::ramped_bpp() = bpp_of(900);
   }
 };
 
@@ -201,7 +201,7 @@ TEST_F(Inertia, ARunUpBeginsWithTheRampAfterARest) {
   EXPECT_EQ(inertia_match.phase, INERTIA_REST);
   EXPECT_GT(inertia_match.base_q8, raw(100.0, 8));
   EXPECT_EQ(inertia_match.angle_bam, 0x12345678u);
-  inside::speed_ramp().value += 1;
+  inside::ramped_bpp() += 1;
   inside::match_inertia();
   EXPECT_EQ(inertia_match.phase, INERTIA_RUN_UP);
   EXPECT_EQ(inertia_match.speed0_bpp, inside::selected().speed_bpp);

@@ -46,7 +46,7 @@ TEST_F(CanCommand, SilenceLeadsToTheConfiguredReaction) {
     parameters.can_reaction = reaction;
     parameters.can_timeout = 50;
     make_running_by_bus();
-    inside::speed_ramp().value = 50'000'000;  // it is turning: a stop takes a while
+    inside::ramped_bpp() = 50'000'000;  // it is turning: a stop takes a while
     pass(39);
     EXPECT_EQ(inside::state(), DRIVE_RUN);
     EXPECT_FALSE(command.timed_out);
@@ -112,14 +112,14 @@ TEST_F(CanCommand, ARunThatClearsAFaultDoesNotStartToo) {
 TEST_F(CanCommand, OnlyARisingBitClearsAndOnlyAFault) {
   make_ready();
   take(frame(CAN_MODE_OFF, 0, true));
-  EXPECT_FALSE(inside::request().reset) << "there is no fault";
+  EXPECT_FALSE(inside::reset_requested()) << "there is no fault";
   inside::state() = DRIVE_FAULT;
   take(frame(CAN_MODE_OFF, 0, true));
-  EXPECT_FALSE(inside::request().reset) << "the bit has been there since before the fault";
+  EXPECT_FALSE(inside::reset_requested()) << "the bit has been there since before the fault";
   take(frame(CAN_MODE_OFF, 0, false));
-  EXPECT_FALSE(inside::request().reset);
+  EXPECT_FALSE(inside::reset_requested());
   take(frame(CAN_MODE_OFF, 0, true));
-  EXPECT_TRUE(inside::request().reset);
+  EXPECT_TRUE(inside::reset_requested());
 }
 
 TEST_F(CanCommand, ADriveThatSomebodyElseStartedIsNotStoppedBySilence) {

@@ -20,7 +20,7 @@ TEST_F(CanCommand, RunsAtTheSpeedAskedForAndStops) {
   take(frame(CAN_MODE_RUN, -400));
   EXPECT_EQ(drive_commanded_speed(), -100 * 65536);
   take(frame(CAN_MODE_STOP));
-  EXPECT_TRUE(inside::request().stop);
+  EXPECT_TRUE(inside::stop_requested());
 }
 
 // Its own time-out watches over the motor, and nobody else lets go of it.
@@ -76,7 +76,7 @@ TEST_F(CanCommand, DamagedRepeatedAndForeignCommandsDoNotCount) {
   f = frame(CAN_MODE_STOP);
   take(f);
   const auto heard = command.heard_ms;
-  inside::request().stop = false;
+  inside::withdraw_stop();
   pass(5);
   take(f);
   EXPECT_EQ(command.heard_ms, heard) << "the same message again";
@@ -134,8 +134,8 @@ TEST_F(CanCommand, TheFirstOffOrStopIsAChangeToIt) {
     SetUp();
     make_run();  // by somebody else
     take(frame(mode));
-    EXPECT_EQ(inside::request().coast, mode == CAN_MODE_OFF);
-    EXPECT_EQ(inside::request().stop, mode == CAN_MODE_STOP);
+    EXPECT_EQ(inside::coast_requested(), mode == CAN_MODE_OFF);
+    EXPECT_EQ(inside::stop_requested(), mode == CAN_MODE_STOP);
   }
 }
 
@@ -146,8 +146,8 @@ TEST_F(CanCommand, WhatDoesNotCountDoesNothing) {
     f.data[3] ^= 1;
     take(f);
   }
-  EXPECT_FALSE(inside::request().stop);
-  EXPECT_FALSE(inside::request().coast);
+  EXPECT_FALSE(inside::stop_requested());
+  EXPECT_FALSE(inside::coast_requested());
   EXPECT_EQ(drive_commanded_speed(), 0);
   EXPECT_FALSE(command.clear_fault);
 }
@@ -157,7 +157,7 @@ TEST_F(CanCommand, ARunGivenWhileSomebodyElseRunsTheDriveIsNotForLater) {
   say(CAN_MODE_OFF, 0, 0);
   can_command_reset(&command);
   take(frame(CAN_MODE_STOP));  // heard, and the drive runs on by its own start
-  inside::request().stop = false;
+  inside::withdraw_stop();
   say(CAN_MODE_RUN, 0, 30);
   ASSERT_EQ(inside::state(), DRIVE_RUN);
   EXPECT_FALSE(command.commanding);
@@ -169,13 +169,13 @@ TEST_F(CanCommand, ARunGivenWhileSomebodyElseRunsTheDriveIsNotForLater) {
 TEST_F(CanCommand, AStopForgetsAStartThatHasNotBeenTaken) {
   make_ready();
   say(CAN_MODE_OFF, 0, 20);
-  inside::request().reload = true;  // holds the start back
+  inside::request_reload();  // holds the start back
   take(frame(CAN_MODE_RUN));
-  ASSERT_TRUE(inside::request().start);
+  ASSERT_TRUE(inside::start_requested());
   pass(1);
   EXPECT_TRUE(command.commanding) << "the start has only not been taken yet";
   take(frame(CAN_MODE_STOP));
-  inside::request().reload = false;
+  inside::withdraw_reload();
   pass(100);
   EXPECT_EQ(inside::state(), DRIVE_READY);
 }

@@ -98,7 +98,7 @@ TEST_F(CanNode, ParametersAreReadAndWrittenByNumber) {
   r = answer_to(parameter(7, 222, 0));
   EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_STATUS), ANSWER_RANGE);
   EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_OPERATION), 7) << "as asked";
-  inside::request().reload = false;  // main.c's work
+  inside::withdraw_reload();  // main.c's work
   make_run();
   r = answer_to(parameter(1, 220, 2));
   EXPECT_EQ(can_get(&r, CAN_PARAMETER_RESPONSE_STATUS), ANSWER_RUNNING);

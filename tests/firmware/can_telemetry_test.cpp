@@ -82,7 +82,7 @@ TEST_F(CanTelemetry, TheStatusNamesStateFaultAndLimits) {
 TEST_F(CanTelemetry, SpeedsAreInRevolutionsPerMinute) {
   inside::state() = DRIVE_RUN;
   inside::selected().speed_bpp = bpp_of(1500);
-  inside::speed_ramp().value = bpp_of(-750);
+  inside::ramped_bpp() = bpp_of(-750);
   const hal_can_frame_t frame = status();
   EXPECT_NEAR(value_of(frame, CAN_STATUS_SPEED), 1500.0, half_step(CAN_STATUS_SPEED));
   EXPECT_NEAR(value_of(frame, CAN_STATUS_REFERENCE), -750.0, half_step(CAN_STATUS_REFERENCE));

@@ -38,7 +38,7 @@ TEST_F(Drive, CoastBreaksAStartOffAndOutlastsIt) {
 
 TEST_F(Drive, CoastDoesNotWaitForParameters) {
   make_run();
-  inside::request().reload = true;  // the background level never gets to it
+  inside::request_reload();  // the background level never gets to it
   drive_command_coast();
   period();
   EXPECT_FALSE(board.gates_on);

@@ -19,7 +19,7 @@ class Guard : public Requests {
   Answer tell(std::int32_t number) { return ask(REQUEST_STATUS, little(static_cast<std::uint32_t>(number), 4)); }
   void start(std::int32_t argument) {
     ASSERT_EQ(give(COMMAND_START, argument).status(), OK);
-    inside::request().start = false;
+    inside::withdraw_start();
     inside::state() = DRIVE_RUN;
   }
 };
@@ -30,11 +30,11 @@ TEST_F(Guard, SilenceStopsTheDrive) {
     run(1000);
     EXPECT_EQ(tell(kMine).number(22, 1), 5u) << "on, and of who asks";
   }
-  EXPECT_FALSE(inside::request().stop);
+  EXPECT_FALSE(inside::stop_requested());
   run(1500);
-  EXPECT_FALSE(inside::request().stop);
+  EXPECT_FALSE(inside::stop_requested());
   run(600);
-  EXPECT_TRUE(inside::request().stop);
+  EXPECT_TRUE(inside::stop_requested());
   EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 2u) << "and it says so";
 }
 
@@ -45,21 +45,21 @@ TEST_F(Guard, AFaultEndsItBeforeTheStartWasCarriedOut) {
   EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 0u);
   inside::state() = DRIVE_RUN;  // reset and started by somebody else
   run(3000);
-  EXPECT_FALSE(inside::request().stop);
+  EXPECT_FALSE(inside::stop_requested());
 }
 
 TEST_F(Guard, ItCanBeToldToCoast) {
   parameters.link_reaction = LINK_REACTION_COAST;
   start(kMine);
   run(2500);
-  EXPECT_TRUE(inside::request().coast);
-  EXPECT_FALSE(inside::request().stop);
+  EXPECT_TRUE(inside::coast_requested());
+  EXPECT_FALSE(inside::stop_requested());
 }
 
 TEST_F(Guard, WithoutItSilenceIsNothing) {
   start(0);
   run(5000);
-  EXPECT_FALSE(inside::request().stop || inside::request().coast);
+  EXPECT_FALSE(inside::stop_requested() || inside::coast_requested());
 }
 
 TEST_F(Guard, ItIsAskedForWithTheLowestBit) {
@@ -81,7 +81,7 @@ TEST_F(Guard, OtherClientsKeepNothingAlive) {
     (void)ask(REQUEST_SIGNALS, {0, 0});
     (void)ask(REQUEST_STATUS);
   }
-  EXPECT_TRUE(inside::request().stop);
+  EXPECT_TRUE(inside::stop_requested());
 }
 
 TEST_F(Guard, AnotherClientThatGoesStopsNothing) {
@@ -91,7 +91,7 @@ TEST_F(Guard, AnotherClientThatGoesStopsNothing) {
     run(1000);
     (void)tell(kMine);
   }
-  EXPECT_FALSE(inside::request().stop);
+  EXPECT_FALSE(inside::stop_requested());
 }
 
 TEST_F(Guard, AFormerClientIsToldWhyItMayNotStart) {
@@ -100,7 +100,7 @@ TEST_F(Guard, AFormerClientIsToldWhyItMayNotStart) {
     EXPECT_EQ(give(code, 1).status(), RANGE);
     EXPECT_EQ(give(code, 1).text(), "a guarded start needs the client's number: this client is too old");
   }
-  EXPECT_FALSE(inside::request().start || inside::request().begin != nullptr);
+  EXPECT_FALSE(inside::start_requested() || inside::state_requested() != nullptr);
   EXPECT_EQ(give(COMMAND_SPEED, 1).status(), OK) << "of which the lowest bit says nothing";
   for (int octets = 1; octets < 4; ++octets) EXPECT_EQ(ask(REQUEST_STATUS, little(1, octets)).status(), LENGTH);
 }
@@ -108,10 +108,10 @@ TEST_F(Guard, AFormerClientIsToldWhyItMayNotStart) {
 // From the last record on, and no earlier; then it has done its work.
 TEST_F(Guard, SilenceIsAsLongAsToldAndEndsItOnce) {
   const auto stops_at = [](std::uint32_t ms) {
-    inside::request().stop = false;
+    inside::withdraw_stop();
     inside::time_ms() = ms;
     comm_watchdog_service();
-    return inside::request().stop;
+    return inside::stop_requested();
   };
   inside::state() = DRIVE_RUN;
   inside::time_ms() = 1000;
@@ -142,7 +142,7 @@ TEST_F(Guard, OnlyThePortThatStartedCounts) {
     (void)request_answer(COMM_WATCHDOG_BUS, request, 6, answer);
     send("\r");  // nor does text
   }
-  EXPECT_TRUE(inside::request().stop);
+  EXPECT_TRUE(inside::stop_requested());
 }
 
 TEST_F(Guard, ItEndsWithThePowerStage) {
@@ -152,7 +152,7 @@ TEST_F(Guard, ItEndsWithThePowerStage) {
   run(10);
   inside::state() = DRIVE_RUN;  // started by someone else, without it
   run(5000);
-  EXPECT_FALSE(inside::request().stop);
+  EXPECT_FALSE(inside::stop_requested());
 }
 
 }  // namespace

@@ -35,8 +35,8 @@ class Phases : public Drive {
 
   /// One period of a phase, as the sequence calls it.
   static bool step(bool (*phase)(drive_t*)) {
-    inside::schedule().exclusive = true;  // for whoever asks for it
-    inside::schedule().task = (commissioning.tick % 10 == 5) ? TASK_FIELD : TASK_SLOT;
+    inside::is_exclusive() = true;  // for whoever asks for it
+    inside::scheduled_task() = (commissioning.tick % 10 == 5) ? TASK_FIELD : TASK_SLOT;
     const bool done = phase(&drive);
     commissioning.tick++;
     return done;

@@ -46,7 +46,7 @@ TEST_F(Phases, TheSamplesSettleForLonger) {
     inside::config().modulator.pulse_ticks = static_cast<std::int16_t>(c.pulse_ticks);
     s.settle_ticks = static_cast<std::int16_t>(c.settle_ticks);
     commissioning.longer = false;
-    inside::request().reload = false;
+    inside::withdraw_reload();
     drive_command_commission();
     EXPECT_EQ(s.settle_ticks, c.longer) << c.pulse_ticks;
     drive_command_commission();

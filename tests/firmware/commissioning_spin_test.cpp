@@ -14,7 +14,7 @@ using namespace stillspin::test;
 // turn, ramps between them, and a stop.
 TEST_F(Phases, TheSpinSumsStationsAndRamps) {
   std::memset(&commissioning.spin, 0x55, sizeof commissioning.spin);  // an earlier commissioning's
-  inside::schedule().exclusive = true;
+  inside::is_exclusive() = true;
   inside::selected() = {bam(0.4), bpp(5.0), 0, 32767};
   const std::int32_t high = bpp_of(600);
   inside::command_dq_q16() = {raw(-3.0, 16), raw(20.0, 16)};
@@ -28,9 +28,9 @@ TEST_F(Phases, TheSpinSumsStationsAndRamps) {
   for (; n < 100000; ++n) {
     inside::current_dq_q20().q = raw(inside::spin_d_q20() == 0 ? 0.5 : 7.0, 20);
     EXPECT_FALSE(step(commissioning_spin));
-    if (!inside::flags().spins) break;
+    if (!inside::spins()) break;
     ASSERT_LE(std::abs(inside::target_bpp() - last), high / 300 + 1) << n << ": once in a millisecond";
-    last = inside::speed_ramp().value = inside::target_bpp();
+    last = inside::ramped_bpp() = inside::target_bpp();
     inside::selected().speed_bpp = last / 50 * 49;
     turned += static_cast<std::uint32_t>(last);
     inside::selected().angle_bam = turned + static_cast<std::uint32_t>(n % 2 == 0 ? high : -high);
@@ -102,7 +102,7 @@ TEST_F(Phases, TheSpinHasACurrentAlongDWhileItMeasuresTheVoltage) {
     inside::spin_d_q20() = raw(9.0, 20);  // of one that was broken off
     (void)step(commissioning_spin);
     EXPECT_EQ(inside::spin_d_q20(), 0);
-    inside::schedule().exclusive = true;
+    inside::is_exclusive() = true;
     commissioning.uniform = c.uniform;
     double sum = 0.0, largest = 0.0, least = limit_;
     int flows = 0;
@@ -111,9 +111,9 @@ TEST_F(Phases, TheSpinHasACurrentAlongDWhileItMeasuresTheVoltage) {
       ASSERT_LT(n, 100000);
       const bool field = s.leg < 3 && s.tick >= 4000 && s.tick < 12182, turned = s.tick >= 8096;
       if (step(commissioning_spin)) break;
-      inside::speed_ramp().value = inside::target_bpp();
+      inside::ramped_bpp() = inside::target_bpp();
       inside::selected().angle_bam += static_cast<std::uint32_t>(inside::target_bpp());
-      if (inside::schedule().task != TASK_FIELD) continue;
+      if (inside::scheduled_task() != TASK_FIELD) continue;
       const double now = real(inside::spin_d_q20(), 20);
       EXPECT_EQ(now != 0.0, field && c.most > 0.0) << s.leg << ", " << s.tick;
       if (now == 0.0) continue;
@@ -141,14 +141,14 @@ TEST_F(Phases, TheSpinHasACurrentAlongDWhileItMeasuresTheVoltage) {
 
 // A brake, or a shaft that is blocked: no turn ever ends, and the current that pulls must.
 TEST_F(Phases, TheSpinOfAShaftThatStandsEnds) {
-  inside::schedule().exclusive = true;
+  inside::is_exclusive() = true;
   inside::selected() = {bam(0.4), 0, 0, 32767};
   EXPECT_FALSE(step(commissioning_spin));
   int n = 0;
   for (; n < 300000; ++n) {
     EXPECT_FALSE(step(commissioning_spin));
-    if (!inside::flags().spins) break;
-    inside::speed_ramp().value = inside::target_bpp();
+    if (!inside::spins()) break;
+    inside::ramped_bpp() = inside::target_bpp();
   }
   EXPECT_NEAR(n, 1000 + 2000 + 2000 + 1000 + 3 * 22192 + 3000 + 9 * 14000, 100) << "each end of a turn is waited for";
   for (const spin_sums_t& at : commissioning.spin.station) EXPECT_EQ(at.speed, 0);
@@ -162,16 +162,16 @@ TEST_F(Phases, TheSpinOfAShaftThatShowsNoAxisBeginsWithAVector) {
   inside::target_bpp() = -bpp_of(100);  // a command of before
   EXPECT_FALSE(step(commissioning_spin));
   ASSERT_EQ(inside::state(), DRIVE_START);
-  EXPECT_EQ(inside::start_found().phase, START_IF_RAMP);
-  EXPECT_EQ(inside::flags().behind, DRIVE_COMMISSION);
-  EXPECT_TRUE(inside::flags().open_loop);
+  EXPECT_EQ(inside::start_phase(), START_IF_RAMP);
+  EXPECT_EQ(inside::state_behind(), DRIVE_COMMISSION);
+  EXPECT_TRUE(inside::is_open_loop());
   EXPECT_EQ(inside::target_bpp(), 0) << "forward";
 
   drive_enter(&drive, DRIVE_COMMISSION);  // as the ramp's end does it
-  inside::flags().spins = true;
+  inside::spins() = true;
   inside::selected() = {bam(0.4), bpp_of(300), 0, 32767};
-  inside::speed_ramp().value = bpp_of(300);
-  inside::schedule().exclusive = false;
+  inside::ramped_bpp() = bpp_of(300);
+  inside::is_exclusive() = false;
   EXPECT_FALSE(commissioning_spin(&drive));
   EXPECT_FALSE(commissioning.spin.begun) << "in a period of its own";
   EXPECT_EQ(inside::target_bpp(), bpp_of(300)) << "and is not braked meanwhile";
@@ -181,13 +181,13 @@ TEST_F(Phases, TheSpinOfAShaftThatShowsNoAxisBeginsWithAVector) {
   EXPECT_NEAR(inside::target_bpp(), bpp_of(300), bpp_of(600) / 300 + 1);
   int n = 0;
   while (!step(commissioning_spin)) {
-    inside::speed_ramp().value = inside::selected().speed_bpp = inside::target_bpp();
+    inside::ramped_bpp() = inside::selected().speed_bpp = inside::target_bpp();
     inside::selected().angle_bam += static_cast<std::uint32_t>(inside::target_bpp());
     ASSERT_LT(++n, 100000);
   }
   for (const spin_sums_t& at : commissioning.spin.station) EXPECT_GE(at.periods, 8192);
   EXPECT_NEAR(inside::selected().speed_bpp, bpp_of(200), 300);
-  EXPECT_TRUE(inside::flags().spins);
+  EXPECT_TRUE(inside::spins());
   EXPECT_EQ(commissioning.phase, COMMISSIONING_MAP) << "which is passed over";
 }
 
@@ -196,12 +196,12 @@ TEST_F(Phases, TheSpinStaysWithinTheSpeedLimit) {
   parameters.spin_speed = 900 * 256;
   parameters.speed_limit = 450 * 256;
   use_parameters();
-  inside::schedule().exclusive = true;
+  inside::is_exclusive() = true;
   std::int32_t most = 0;
   (void)step(commissioning_spin);
-  for (int n = 0; n < 80000 && (n == 0 || inside::flags().spins); ++n) {
+  for (int n = 0; n < 80000 && (n == 0 || inside::spins()); ++n) {
     (void)step(commissioning_spin);
-    inside::speed_ramp().value = inside::selected().speed_bpp = inside::target_bpp();
+    inside::ramped_bpp() = inside::selected().speed_bpp = inside::target_bpp();
     inside::selected().angle_bam += static_cast<std::uint32_t>(inside::target_bpp());
     most = std::max(most, inside::target_bpp());
   }

@@ -131,7 +131,7 @@ TEST_F(CommissioningStairs, ThePairsAtRestAreNotBesideTheTorqueConstant) {
   inside::windows()[1].voltage_q19 = {raw(-200.0, 19), 0};
   int expected = 0;
   for (const task_t task : {TASK_SPEED, TASK_JUDGE_FIRST, TASK_SLOT, TASK_RENEW, TASK_FIELD, TASK_JUDGE}) {
-    inside::schedule().task = task;
+    inside::scheduled_task() = task;
     commissioning_add_still(&drive);
     expected += task == TASK_JUDGE ? 0 : 1;
     EXPECT_EQ(commissioning.unsaturated.count, expected) << task;

@@ -77,7 +77,7 @@ TEST_F(Commissioning, IsNotTurnedByAVector) {
     make_ready();
     asked ? drive_command_commission() : drive_command_start();
     periods(2);
-    EXPECT_EQ(inside::start_found().phase, asked ? START_AXIS : START_IF_RAMP);
+    EXPECT_EQ(inside::start_phase(), asked ? START_AXIS : START_IF_RAMP);
   }
 }
 
@@ -92,7 +92,7 @@ TEST_F(Commissioning, AStartByAVectorLooksAtTheWiresOnlyBehindAListening) {
     make_ready();
     drive_command_start();
     period();
-    ASSERT_EQ(inside::start_found().phase, listens ? START_LISTEN : START_IF_RAMP);
+    ASSERT_EQ(inside::start_phase(), listens ? START_LISTEN : START_IF_RAMP);
     EXPECT_EQ(start_at_standstill(&drive), listens ? START_AXIS : START_IF_RAMP);
   }
 }
@@ -107,14 +107,14 @@ TEST_F(Commissioning, AMachineWithoutSaliencyIsNotAskedForItsPolarity) {
       make_ready();
       asked ? drive_command_commission() : drive_command_start();
       periods(3);
-      ASSERT_EQ(inside::start_found().phase, START_AXIS);
+      ASSERT_EQ(inside::start_phase(), START_AXIS);
       const machine_model_t& m = inside::model();
       axis_t& seen = starting.axis;
       seen = {1 << 20, 0, 0, 0, 0, AXIS_PERIODS};
       const double mean = real(m.yd_q30, 30) / 2 + real(m.yq_q30, 30) / 2;
       const double half = (real(m.yd_q30, 30) - real(m.yq_q30, 30)) / 2;
       seen.mirror_q16 = raw((saliency * mean - half) * 4096.0, 16);
-      inside::schedule().exclusive = true;
+      inside::is_exclusive() = true;
       starting.tick = 10;
       const start_phase_t next = axis_phase.step(&drive);
       const bool at_once = asked && saliency < 1.0 / 16.0;
@@ -134,7 +134,7 @@ TEST_F(Commissioning, AStartIsStillAStart) {
   begin();
   drive_command_stop();
   periods(5);
-  inside::request().reload = false;  // the background level's part
+  inside::withdraw_reload();  // the background level's part
   drive_command_start();
   periods(10);
   start_run(&drive, 0, 0);
@@ -147,7 +147,7 @@ TEST_F(Commissioning, AShaftThatTurnsIsBroughtToRestInstead) {
   make_ready();
   drive_command_commission();
   periods(10);
-  inside::flags().caught = true;
+  inside::is_caught() = true;
   start_run(&drive, 0, 4000000);  // 140 rpm
   EXPECT_EQ(inside::state(), DRIVE_STOP);
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_ABORTED);
@@ -176,8 +176,8 @@ TEST_F(Commissioning, AFaultEndsIt) {
   EXPECT_EQ(inside::state(), DRIVE_FAULT);
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_FAILED);
   EXPECT_EQ(drive_commissioning_phase(), COMMISSIONING_IDLE);
-  EXPECT_EQ(inside::flags().behind, DRIVE_BOOT) << "no start leads there any more";
-  EXPECT_TRUE(inside::request().reload);
+  EXPECT_EQ(inside::state_behind(), DRIVE_BOOT) << "no start leads there any more";
+  EXPECT_TRUE(inside::reload_requested());
   EXPECT_FALSE(board.gates_on);
 }
 
@@ -215,23 +215,23 @@ TEST_F(Commissioning, ItsEndRestoresTheConfigurationWhateverWasFound) {
   begin();
   commissioning.phase = COMMISSIONING_EVALUATE;
   commissioning.evaluate = true;
-  inside::request().reload = false;
+  inside::withdraw_reload();
   commissioning.model = inside::config().nameplate;
   commissioning_service(&drive);
-  EXPECT_TRUE(inside::request().reload) << "nothing was measured, yet the longer settling has to go";
+  EXPECT_TRUE(inside::reload_requested()) << "nothing was measured, yet the longer settling has to go";
 }
 
 TEST_F(Commissioning, TheLongerSettlingStaysForOneThatWasAskedFor) {
   commissioning.longer = false;
   drive_command_commission();
-  inside::request().reload = false;
+  inside::withdraw_reload();
   commissioning_service(&drive);
   EXPECT_TRUE(commissioning.longer);
-  EXPECT_FALSE(inside::request().reload);
-  inside::request().begin = nullptr;  // it did not begin
+  EXPECT_FALSE(inside::reload_requested());
+  inside::withdraw_state();  // it did not begin
   commissioning_service(&drive);
   EXPECT_FALSE(commissioning.longer);
-  EXPECT_TRUE(inside::request().reload);
+  EXPECT_TRUE(inside::reload_requested());
 }
 
 // Played from a recording, the background's work is done where it was done, and not before.
@@ -239,17 +239,17 @@ TEST_F(Commissioning, ATapeDecidesWhenTheBackgroundWorks) {
   begin();
   commissioning.phase = COMMISSIONING_EVALUATE;
   commissioning.evaluate = true;
-  inside::flags().over = true;
+  inside::is_over() = true;
   commissioning.model = inside::config().nameplate;
   drive_parameters_changed();
   hal_replay_start(REPLAY_PLAYS, nullptr);
   background_step(&drive);
   EXPECT_TRUE(commissioning.evaluate);
-  EXPECT_TRUE(inside::request().reload);
+  EXPECT_TRUE(inside::reload_requested());
   hal_replay_start(REPLAY_OFF, nullptr);
   background_step(&drive);
   EXPECT_FALSE(commissioning.evaluate);
-  EXPECT_FALSE(inside::request().reload);
+  EXPECT_FALSE(inside::reload_requested());
 }
 
 // Whatever the last one was broken off in.
@@ -264,9 +264,9 @@ TEST_F(Commissioning, BeginsWithNothingOfTheLastOne) {
   drive_command_commission();
   period();
   EXPECT_EQ(inside::state(), DRIVE_START);
-  EXPECT_FALSE(inside::flags().spins || inside::flags().frozen || c.predicting || c.solve_motion || c.evaluate);
+  EXPECT_FALSE(inside::spins() || inside::is_frozen() || c.predicting || c.solve_motion || c.evaluate);
   EXPECT_FALSE(c.uniform);
-  EXPECT_EQ(inside::flags().behind, DRIVE_COMMISSION);
+  EXPECT_EQ(inside::state_behind(), DRIVE_COMMISSION);
   EXPECT_EQ(c.phase, COMMISSIONING_IDLE);
   EXPECT_EQ(c.tick, 0);
 }
@@ -276,15 +276,15 @@ TEST_F(Commissioning, BeginsWithNothingOfTheLastOne) {
 TEST_F(Commissioning, PhasesFollowEachOther) {
   begin();
   commissioning_t& c = commissioning;
-  EXPECT_FALSE(inside::flags().frozen);
+  EXPECT_FALSE(inside::is_frozen());
   c.tick = 6000;  // of turning to its place
   commissioning_state.step(&drive);
   EXPECT_EQ(c.phase, COMMISSIONING_ALIGN) << "the end has a period of its own";
-  inside::schedule().exclusive = true;
+  inside::is_exclusive() = true;
   commissioning_state.step(&drive);
   EXPECT_EQ(c.phase, COMMISSIONING_STAIRCASE);
   EXPECT_EQ(c.tick, 0);
-  EXPECT_TRUE(inside::flags().frozen);
+  EXPECT_TRUE(inside::is_frozen());
   commissioning_state.step(&drive);
   EXPECT_EQ(c.tick, 1);
   c.staircase.index = STAIRCASE_LEVELS;
@@ -306,7 +306,7 @@ TEST_F(Commissioning, PhasesFollowEachOther) {
   commissioning_state.step(&drive);
   EXPECT_EQ(c.phase, COMMISSIONING_EVALUATE);
   EXPECT_TRUE(c.evaluate);
-  EXPECT_TRUE(inside::flags().over);
+  EXPECT_TRUE(inside::is_over());
   EXPECT_FALSE(board.gates_on);
   EXPECT_FALSE(inside::loop_is_closed());
   EXPECT_EQ(inside::state(), DRIVE_COMMISSION);
@@ -321,7 +321,7 @@ TEST_F(Commissioning, AStopDuringTheEvaluationIsTooLate) {
   begin();
   commissioning.phase = COMMISSIONING_EVALUATE;
   commissioning.evaluate = true;
-  inside::flags().over = true;
+  inside::is_over() = true;
   drive_command_stop();
   periods(3);
   EXPECT_EQ(inside::state(), DRIVE_COMMISSION);
@@ -330,13 +330,13 @@ TEST_F(Commissioning, AStopDuringTheEvaluationIsTooLate) {
 
 TEST_F(Commissioning, ASpeedCommandDoesNotReachTheSpin) {
   begin();
-  inside::flags().spins = true;
+  inside::spins() = true;
   inside::target_bpp() = 12345;
   drive_command_speed(1000L * 65536L);
   drive_sequence(&drive);
   EXPECT_EQ(inside::command_rpm_q16(), 1000L * 65536L) << "it is for what follows";
   EXPECT_EQ(inside::target_bpp(), 12345);
-  inside::flags().spins = false;
+  inside::spins() = false;
   drive_command_speed(1000L * 65536L);
   drive_sequence(&drive);
   EXPECT_GT(inside::target_bpp(), 12345);
@@ -361,8 +361,8 @@ TEST_F(Commissioning, EachPhaseBeginsWithoutSums) {
     std::memset(&c.spin, 0x11, sizeof c.spin);
     std::memset(&c.unsaturated, 0x11, sizeof c.unsaturated);
     c.tick = 0;
-    inside::flags().spins = false;
-    inside::flags().frozen = true;
+    inside::spins() = false;
+    inside::is_frozen() = true;
     inside::window_count() = 0;
     EXPECT_FALSE(phase(&drive));
   };
@@ -395,9 +395,9 @@ TEST_F(Commissioning, EachPhaseBeginsWithoutSums) {
   }
   first_period(commissioning_spin);
   c.tick = 1;
-  inside::schedule().exclusive = true;
+  inside::is_exclusive() = true;
   EXPECT_FALSE(commissioning_spin(&drive));
-  EXPECT_TRUE(inside::flags().spins && !inside::flags().frozen);
+  EXPECT_TRUE(inside::spins() && !inside::is_frozen());
   EXPECT_EQ(c.spin.leg, 0);
   EXPECT_EQ(c.spin.tick, 0);
   for (const spin_sums_t& s : c.spin.station) EXPECT_EQ(s.speed | s.voltage_q | s.current_q | s.periods, 0);

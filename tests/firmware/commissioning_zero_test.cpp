@@ -88,17 +88,17 @@ TEST_F(CommissioningAtZero, ThePulsesComeBack) {
     SetUp();
     begin(periods);
     ASSERT_EQ(stairs().at_zero, periods < 16.0 / 3.0);
-    inside::request().reload = false;
+    inside::withdraw_reload();
     stairs().index = STAIRCASE_LEVELS;
     stairs().tick = 0;
     inside::reference_dq_q20() = {inside::config().values.current_limit / 64 + 1, 0};
     (void)step(commissioning_climb);
-    EXPECT_FALSE(inside::request().reload) << "while a current flows";
+    EXPECT_FALSE(inside::reload_requested()) << "while a current flows";
     (void)step(commissioning_climb);
-    EXPECT_EQ(inside::request().reload, stairs().at_zero);
-    inside::request().reload = false;
+    EXPECT_EQ(inside::reload_requested(), stairs().at_zero);
+    inside::withdraw_reload();
     for (int n = 0; n < 9; ++n) (void)step(commissioning_climb);
-    EXPECT_FALSE(inside::request().reload) << "once";
+    EXPECT_FALSE(inside::reload_requested()) << "once";
   }
 }
 

@@ -33,8 +33,8 @@ class ConsoleHands : public Console {
   }
   void start_hold() {
     (void)command("start hold", 100);
-    ASSERT_TRUE(inside::request().start);
-    inside::request().start = false;
+    ASSERT_TRUE(inside::start_requested());
+    inside::withdraw_start();
     inside::state() = DRIVE_RUN;
     run(300);
   }
@@ -51,10 +51,10 @@ TEST_F(ConsoleHands, ALineThatWasLeftDoesNotStartTheMotor) {
   NEEDS("commissioning");
   for (const char* line : {"start free", "start hold", "commission start free"}) {
     EXPECT_EQ(after(line, kLong), std::string("\r\n") + kTooOld) << line;
-    EXPECT_FALSE(inside::request().start || inside::request().begin != nullptr || comm_watchdog_is_on()) << line;
+    EXPECT_FALSE(inside::start_requested() || inside::state_requested() != nullptr || comm_watchdog_is_on()) << line;
   }
   EXPECT_FALSE(has(after("start free", kShort), "typed over 5 s ago"));
-  EXPECT_TRUE(inside::request().start);
+  EXPECT_TRUE(inside::start_requested());
 }
 
 TEST_F(ConsoleHands, ASpeedExpiresWhileTheMotorRunsUnlessItIsZero) {
@@ -78,7 +78,7 @@ TEST_F(ConsoleHands, OtherLinesNeverExpire) {
   EXPECT_TRUE(has(after("commission results", kLong), "commissioning: not yet"));
   inside::state() = DRIVE_RUN;
   EXPECT_TRUE(has(after("stop", kLong), "stopping"));
-  EXPECT_TRUE(inside::request().stop);
+  EXPECT_TRUE(inside::stop_requested());
 }
 
 // Once expired it stays expired: to complete somebody else's line is not to have typed it.
@@ -86,12 +86,12 @@ TEST_F(ConsoleHands, AnOldLineStaysOldUntilItIsEmptied) {
   send("start fre");
   run(kLong);
   EXPECT_TRUE(has(command("e"), "typed over 5 s ago"));
-  EXPECT_FALSE(inside::request().start);
+  EXPECT_FALSE(inside::start_requested());
   send("start fre");
   run(kLong);
   send("\x15");
   EXPECT_FALSE(has(command("start free", 300), "typed over 5 s ago"));
-  EXPECT_TRUE(inside::request().start);
+  EXPECT_TRUE(inside::start_requested());
 }
 
 TEST_F(ConsoleHands, AnOldLineThatWasTakenBackIsForgotten) {
@@ -99,13 +99,13 @@ TEST_F(ConsoleHands, AnOldLineThatWasTakenBackIsForgotten) {
   run(kLong);
   send("\b\b\b");
   EXPECT_FALSE(has(command("start free", 300), "typed over 5 s ago"));
-  EXPECT_TRUE(inside::request().start);
+  EXPECT_TRUE(inside::start_requested());
 }
 
 TEST_F(ConsoleHands, TheArrowUpBringsAnOldLineBackAsANewOne) {
   (void)after("start free", kLong);
   (void)command("\x1B[A", 300);
-  EXPECT_TRUE(inside::request().start);
+  EXPECT_TRUE(inside::start_requested());
 }
 
 // Typed ahead during an answer, it is as old as when it came, not as when its turn came.
@@ -123,7 +123,7 @@ TEST_F(ConsoleHands, WhatIsTypedAheadIsAsOldAsItIs) {
   send("\r");
   run(40000);
   EXPECT_TRUE(has(text, "typed over 5 s ago")) << text.substr(text.size() - 200);
-  EXPECT_FALSE(inside::request().start);
+  EXPECT_FALSE(inside::start_requested());
 }
 
 TEST_F(ConsoleHands, ABreakEmptiesTheLine) {
@@ -131,7 +131,7 @@ TEST_F(ConsoleHands, ABreakEmptiesTheLine) {
   run(100);
   serial_break();
   EXPECT_EQ(command("", 300), "") << "an empty line";
-  EXPECT_FALSE(inside::request().start);
+  EXPECT_FALSE(inside::start_requested());
   send("re");
   run(100);
   serial_break();
@@ -144,9 +144,9 @@ TEST_F(ConsoleHands, TheRestOfALineMovesNothing) {
   run(100);
   serial_break();
   EXPECT_TRUE(has(command("start free", 300), "a break cut it"));
-  EXPECT_FALSE(inside::request().start);
+  EXPECT_FALSE(inside::start_requested());
   EXPECT_FALSE(has(command("start free", 300), "a break cut it"));
-  EXPECT_TRUE(inside::request().start);
+  EXPECT_TRUE(inside::start_requested());
 }
 
 // The break is counted by the interrupt, the octets are read in rounds: those before it and behind it in one.
@@ -154,10 +154,10 @@ TEST_F(ConsoleHands, ABreakStandsWhereItCameAmongTheOctets) {
   send("start free\r");
   serial_break();
   EXPECT_EQ(command("get speed_ramp", 300).substr(0, 10), "speed_ramp");
-  EXPECT_FALSE(inside::request().start);
+  EXPECT_FALSE(inside::start_requested());
   serial_break();
   EXPECT_FALSE(has(command("start free", 300), "nothing done")) << "nothing was cut";
-  EXPECT_TRUE(inside::request().start);
+  EXPECT_TRUE(inside::start_requested());
 }
 
 TEST_F(ConsoleHands, ABreakLeavesWhatWasTypedBehindItDuringALongAnswer) {
@@ -193,18 +193,18 @@ TEST_F(ConsoleHands, AStartNeedsAGuardOrTheWordThatItNeedsNone) {
   for (const char* line : {"start", "commission start", "start now", "start hold free", "commission start hold 1"}) {
     EXPECT_EQ(command(line), ways) << line;
   }
-  EXPECT_FALSE(inside::request().start || inside::request().begin != nullptr);
+  EXPECT_FALSE(inside::start_requested() || inside::state_requested() != nullptr);
 }
 
 TEST_F(ConsoleHands, FreeSaysWhatItMeans) {
   EXPECT_TRUE(
       has(command("start free", 100), "free: nobody watches; it runs until 'stop', even without this terminal"));
-  EXPECT_TRUE(inside::request().start);
+  EXPECT_TRUE(inside::start_requested());
   EXPECT_FALSE(comm_watchdog_is_on());
-  inside::request().start = false;
+  inside::withdraw_start();
   inside::state() = DRIVE_RUN;
   run(100000);
-  EXPECT_FALSE(inside::request().stop) << "and means it";
+  EXPECT_FALSE(inside::stop_requested()) << "and means it";
 }
 
 TEST_F(ConsoleHands, HeldItRunsAsLongAsKeysComeAndStopsWithTheLast) {
@@ -213,13 +213,13 @@ TEST_F(ConsoleHands, HeldItRunsAsLongAsKeysComeAndStopsWithTheLast) {
     run(9000);
     send(k % 2 == 0 ? "\r" : "x");
     run(10);
-    ASSERT_FALSE(inside::request().stop) << k;
+    ASSERT_FALSE(inside::stop_requested()) << k;
   }
   run(9000);
-  EXPECT_FALSE(inside::request().stop);
+  EXPECT_FALSE(inside::stop_requested());
   text.clear();
   run(1500);
-  EXPECT_TRUE(inside::request().stop);
+  EXPECT_TRUE(inside::stop_requested());
   EXPECT_TRUE(has(text, "\r\n! nothing was heard for link_timeout: the motor stops\r\n")) << text;
   text.clear();
   run(20000);
@@ -234,14 +234,14 @@ TEST_F(ConsoleHands, OctetsThatNoKeySendsDoNotHold) {
     send(Octets{octets[std::size_t(k % 3)]});
     run(1000);
   }
-  EXPECT_TRUE(inside::request().stop);
+  EXPECT_TRUE(inside::stop_requested());
 }
 
 TEST_F(ConsoleHands, ALetGoMotorCoastsWhenThatIsTheReaction) {
   parameters.link_reaction = LINK_REACTION_COAST;
   start_hold();
   run(11000);
-  EXPECT_TRUE(inside::request().coast);
+  EXPECT_TRUE(inside::coast_requested());
 }
 
 TEST_F(ConsoleHands, RecordsDoNotHoldWhatKeysHold) {
@@ -250,7 +250,7 @@ TEST_F(ConsoleHands, RecordsDoNotHoldWhatKeysHold) {
     (void)ask(REQUEST_STATUS, kSession);
     run(600);
   }
-  EXPECT_TRUE(inside::request().stop);
+  EXPECT_TRUE(inside::stop_requested());
 }
 
 // The space bar is the key to hold: it leaves the line empty and an answer that goes on alone.
@@ -263,12 +263,12 @@ TEST_F(ConsoleHands, TheSpaceBarHoldsAndNothingElse) {
     send(" ");
     run(300);
   }
-  EXPECT_FALSE(inside::request().stop);
+  EXPECT_FALSE(inside::stop_requested());
   EXPECT_GE(std::count(text.begin(), text.end(), '\n'), 15) << text;
   EXPECT_FALSE(has(text, "> "));
   send("stop\r");
   run(100);
-  EXPECT_TRUE(inside::request().stop);
+  EXPECT_TRUE(inside::stop_requested());
 }
 
 TEST_F(ConsoleHands, ASpaceIsASpaceWhenNobodyHolds) {
@@ -290,19 +290,19 @@ TEST_F(ConsoleHands, RecordsOfASessionGuardABareStart) {
   EXPECT_TRUE(has(command("start", 300), "nobody would watch")) << "who only looks holds nothing";
   (void)ask(REQUEST_STATUS, kSession);
   EXPECT_EQ(command("start", 100), "");
-  EXPECT_TRUE(inside::request().start);
-  inside::request().start = false;
+  EXPECT_TRUE(inside::start_requested());
+  inside::withdraw_start();
   inside::state() = DRIVE_RUN;
   for (int k = 0; k < 30; ++k) {
     (void)ask(REQUEST_STATUS, kSession);
     run(5000);
   }
-  EXPECT_FALSE(inside::request().stop);
+  EXPECT_FALSE(inside::stop_requested());
   for (int k = 0; k < 20; ++k) {  // the terminal has died, the next session is there at once
     (void)ask(REQUEST_STATUS, little(4711, 4));
     run(200);
   }
-  EXPECT_TRUE(inside::request().stop);
+  EXPECT_TRUE(inside::stop_requested());
 }
 
 TEST_F(ConsoleHands, ASessionThatWasThereIsNoGuard) {
@@ -311,7 +311,7 @@ TEST_F(ConsoleHands, ASessionThatWasThereIsNoGuard) {
   run(9000);
   EXPECT_FALSE(has(command("commission start", 100), "nobody would watch"));
   (void)command("stop");
-  inside::request().begin = nullptr;
+  inside::withdraw_state();
   (void)ask(REQUEST_STATUS, kSession);
   run(10500);
   EXPECT_TRUE(has(command("commission start", 100), "nobody would watch"));
@@ -321,7 +321,7 @@ TEST_F(ConsoleHands, WhoLeavesMayLetGoOfAMotorThatRuns) {
   start_hold();
   EXPECT_TRUE(has(command("start free", 100), "free: nobody watches"));
   run(30000);
-  EXPECT_FALSE(inside::request().stop);
+  EXPECT_FALSE(inside::stop_requested());
 }
 
 // What others hold they let go of themselves; the answer says so.
@@ -334,7 +334,7 @@ TEST_F(ConsoleHands, NobodyLetsGoOfWhatTheBusOrTheSwitchHolds) {
   comm_watchdog_begin(COMM_WATCHDOG_OWN, 0);
   EXPECT_EQ(command("start free", 100), others);
   run(50000);
-  EXPECT_FALSE(inside::request().stop) << "they do not speak through it";
+  EXPECT_FALSE(inside::stop_requested()) << "they do not speak through it";
 }
 
 }  // namespace

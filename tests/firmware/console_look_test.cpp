@@ -53,7 +53,7 @@ TEST_F(Console, StatusSaysHowFarAProcedureIs) {
   NEEDS("commissioning");
   inside::state() = DRIVE_COMMISSION;
   commissioning.phase = COMMISSIONING_SPIN;
-  inside::start_found().phase = START_CHARGE;
+  inside::start_phase() = START_CHARGE;
   EXPECT_TRUE(has(command("status"), "state       commissioning: spin: flux linkage, inertia, friction\r\n"));
   inside::state() = DRIVE_START;
   EXPECT_TRUE(has(command("status"), "state       starting: charging the bootstrap capacitors\r\n"));
@@ -63,7 +63,7 @@ TEST_F(Console, StatusSaysWhyParametersDoNotFitTogether) {
   NEEDS("store");
   parameters.if_current = parameters.current_limit + 1;
   parameters.start_method = 1;
-  inside::request().reload = true;
+  inside::request_reload();
   EXPECT_TRUE(has(command("status"),
                   "parameters  if_current must not exceed current_limit with start_method 1 (if_current = "
                   "14.00 A, current_limit = 14.00 A, start_method = 1); 3 of the parameters not saved"));
@@ -114,7 +114,7 @@ TEST_F(Console, WatchGoesOnUntilAKey) {
   EXPECT_TRUE(has(text, "running   0.0 rpm of 0.0 rpm"));
   send("stop\r");
   run(300);
-  EXPECT_TRUE(inside::request().stop) << "the key that ends it belongs to the next command";
+  EXPECT_TRUE(inside::stop_requested()) << "the key that ends it belongs to the next command";
   text.clear();
   run(10000);
   EXPECT_EQ(text, "");
@@ -185,8 +185,8 @@ TEST_F(Console, Commissioning) {
   EXPECT_TRUE(has(command("commission start free"), "not ready"));
   inside::state() = DRIVE_READY;
   EXPECT_TRUE(has(command("commission start free"), "the shaft will turn"));
-  ASSERT_NE(inside::request().begin, nullptr);
-  EXPECT_EQ(inside::request().begin->state, DRIVE_COMMISSION);
+  ASSERT_NE(inside::state_requested(), nullptr);
+  EXPECT_EQ(inside::state_requested()->state, DRIVE_COMMISSION);
 }
 
 TEST_F(Console, ACommissioningUnderWayIsToldWithItsPhase) {

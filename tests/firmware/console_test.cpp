@@ -145,16 +145,16 @@ TEST_F(Console, StartRefStop) {
   EXPECT_TRUE(has(command("ref 60 Hz"), "nothing changed"));
   EXPECT_TRUE(has(command("ref 60 rpm now"), "nothing changed"));
   EXPECT_TRUE(has(command("start now"), "nothing done"));
-  EXPECT_FALSE(inside::request().start);
+  EXPECT_FALSE(inside::start_requested());
   send("start free\r");
   run(300);
-  EXPECT_TRUE(inside::request().start);
+  EXPECT_TRUE(inside::start_requested());
   text.clear();
   inside::state() = DRIVE_RUN;
   run(100);
   EXPECT_TRUE(has(text, "running after 3")) << text;
   EXPECT_EQ(command("stop at once please"), "stopping\r\n");
-  EXPECT_TRUE(inside::request().stop);
+  EXPECT_TRUE(inside::stop_requested());
   inside::state() = DRIVE_READY;
   EXPECT_EQ(command("stop"), "the power stage is off\r\n");
   EXPECT_EQ(command("coast"), "power stage off\r\n");
@@ -163,9 +163,9 @@ TEST_F(Console, StartRefStop) {
 TEST_F(Console, StartAndResetStandAlone) {
   inside::state() = DRIVE_FAULT;
   EXPECT_EQ(command("reset now"), "this command takes nothing after it: nothing done\r\n");
-  EXPECT_FALSE(inside::request().reset);
+  EXPECT_FALSE(inside::reset_requested());
   EXPECT_TRUE(has(command("reset"), "cleared"));
-  EXPECT_TRUE(inside::request().reset);
+  EXPECT_TRUE(inside::reset_requested());
 }
 
 // A line has room for more words than a command takes.
@@ -186,15 +186,15 @@ TEST_F(Console, AStartThatTakesLongIsLeftToItself) {
   EXPECT_FALSE(has(text, "not running yet"));
   run(1000);
   EXPECT_TRUE(has(text, "not running yet: see 'status'\r\n> ")) << text;
-  EXPECT_TRUE(inside::request().start) << "it may still come";
+  EXPECT_TRUE(inside::start_requested()) << "it may still come";
 }
 
 TEST_F(Console, WaitingForTheStartEndsWithAnyKey) {
   inside::state() = DRIVE_READY;
   send("start free\rstop\r");
   run(500);
-  EXPECT_TRUE(inside::request().stop);
-  EXPECT_FALSE(inside::request().start);
+  EXPECT_TRUE(inside::stop_requested());
+  EXPECT_FALSE(inside::start_requested());
 }
 
 TEST_F(Console, AFaultIsToldUnaskedToWhoTypes) {
@@ -303,7 +303,7 @@ TEST_F(Console, ToStopDoesNotWaitForTheEndOfALongAnswer) {
   run(200);
   send("stop\r\n");
   run(100);
-  EXPECT_TRUE(inside::request().stop);
+  EXPECT_TRUE(inside::stop_requested());
   run(30000);
   EXPECT_TRUE(has(text, "the answer and what was typed ahead end here\r\nstopping\r\n> "));
   EXPECT_EQ(drive_commanded_speed(), 0) << "and that was said";
@@ -313,12 +313,12 @@ TEST_F(Console, ToStopDoesNotWaitForTheEndOfALongAnswer) {
 TEST_F(Console, EitherEndOfALineStopsInTheMiddleOfAnAnswer) {
   for (const char* end : {"\r", "\n"}) {
     inside::state() = DRIVE_RUN;
-    inside::request().stop = false;
+    inside::withdraw_stop();
     send("list\r");
     run(200);
     send(std::string("stop") + end);
     run(100);
-    EXPECT_TRUE(inside::request().stop) << int(end[0]);
+    EXPECT_TRUE(inside::stop_requested()) << int(end[0]);
     run(2000);
   }
 }
@@ -359,12 +359,12 @@ TEST_F(Console, ADisturbedLineIsNotObeyed) {
   EXPECT_EQ(drive_commanded_speed(), 0);
   send("st\xFFop\r");
   run(300);
-  EXPECT_TRUE(inside::request().stop) << "but to stop is always right";
+  EXPECT_TRUE(inside::stop_requested()) << "but to stop is always right";
   send(
       "co\xFF"
       "ast\r");
   run(300);
-  EXPECT_TRUE(inside::request().coast) << "and to switch off";
+  EXPECT_TRUE(inside::coast_requested()) << "and to switch off";
   EXPECT_EQ(command("ref 50"), "ref 50.00 rpm\r\n") << "the next line is another one";
 }
 

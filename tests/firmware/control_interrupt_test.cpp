@@ -52,7 +52,7 @@ TEST_F(ControlInterrupt, ItsWorkIsBetweenBeginAndEnd) {
 // Between the speed control's milliseconds the current loop makes a voltage of what is asked for.
 TEST_F(ControlInterrupt, ACurrentThatIsAskedForBecomesAVoltage) {
   make_run();
-  periods_until([] { return inside::schedule().period == 2; });
+  periods_until([] { return inside::scheduled_period() == 2; });
   for (const double amps : {3.0, -3.0}) {
     inside::reference_dq_q20().q = raw(amps, 20);
     const std::int32_t before = inside::command_dq_q16().q;

@@ -108,7 +108,7 @@ TEST_F(Exchange, AStopAndItsEndDoNot) {
   expect_no_difference(
       [&] {
         make_run();
-        inside::speed_ramp().value = bpp_of(100);
+        inside::ramped_bpp() = bpp_of(100);
         drive_command_stop();
       },
       DRIVE_STOP);
@@ -227,7 +227,7 @@ TEST_F(Exchange, AQuestionChangesNothing) {
   EXPECT_NE(parameter_conflict_with(kLinkRegulation, parameters.link_maximum), PACKED_NONE);
   EXPECT_EQ(parameter_conflict_with(kLinkRegulation, set), PACKED_NONE);
   EXPECT_EQ(parameters.link_regulation, set);
-  EXPECT_FALSE(inside::request().reload);
+  EXPECT_FALSE(inside::reload_requested());
   EXPECT_EQ(parameter_conflict_known(), PACKED_NONE);
 }
 

@@ -190,7 +190,7 @@ class Drive : public ::testing::Test {
     for (int n = 0; n < 350 && inside::state() != DRIVE_RUN; ++n) period();
     ASSERT_EQ(inside::state(), DRIVE_RUN) << inside::fault();
     forget_windows();
-    inside::speed_ramp().value = 0;
+    inside::ramped_bpp() = 0;
     periods(20);
   }
 };

@@ -95,7 +95,7 @@ TEST_F(Drive, EstimatorsApartForTooLongAreDivergence) {
   int n = 0;
   while (inside::state() == DRIVE_RUN && n < 2 * allowed) {
     // the encoder says one thing, AVV is held 70 degrees away: beyond divergence_limit, less than a quarter turn
-    inside::avv().observer.angle_bam = encoder.observer.angle_bam + 0x31C71C72u;
+    inside::avv_angle_bam() = encoder.observer.angle_bam + 0x31C71C72u;
     period();
     n++;
   }
@@ -109,7 +109,7 @@ TEST_F(Drive, AnAngleThatRunsOnAloneIsALossOfSynchronism) {
   int n = 0;
   while (inside::state() == DRIVE_RUN && n < 400) {
     board.encoder = (board.encoder + 4u) & 4095u;
-    inside::avv().observer.angle_bam = encoder.observer.angle_bam;
+    inside::avv_angle_bam() = encoder.observer.angle_bam;
     period();
     n++;
   }
@@ -139,10 +139,10 @@ TEST_F(Drive, ACaughtRotorWithoutAnAxisIsAFault) {
   make_run();
   inside::state() = DRIVE_START;
   starting = {};
-  inside::flags().caught = true;
-  inside::start_found().phase = START_CATCH;
+  inside::is_caught() = true;
+  inside::start_phase() = START_CATCH;
   for (int n = 0; n < 300; ++n) {
-    inside::avv().regression.information = 0;
+    inside::avv_information() = 0;
     starting.axis.count = 0;
     period();
   }

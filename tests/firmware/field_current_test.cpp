@@ -42,7 +42,7 @@ TEST_F(SpeedTask, WeakeningSeesWhatTheModulatorHas) {
 TEST_F(SpeedTask, WeakeningIsForAShaftThatTurns) {
   const auto sees = [&](drive_state_t state, bool caught) {
     inside::state() = state;
-    inside::flags().caught = caught;
+    inside::is_caught() = caught;
     constexpr std::int32_t kMark = 77;
     inside::weakening_q20() = kMark;
     part(TASK_FIELD);
@@ -85,8 +85,8 @@ TEST_F(SpeedTask, TheFieldCurrentIsTheLeastOfItsReasons) {
     parameters.mtpa = c.mtpa;
     use_parameters();
     inside::state() = c.state;
-    inside::flags().spins = true;
-    inside::blend().region = c.region;
+    inside::spins() = true;
+    inside::blend_region() = c.region;
     inside::weakening_q20() = raw(c.weakening, 20);
     inside::reference_dq_q20().q = raw(9.0, 20);
     inside::limits() = c.weakening < 0.0 ? 0 : LIMIT_WEAKENING;
@@ -118,7 +118,7 @@ TEST_F(SpeedTask, SomeCurrentFlowsWhereTheFluxSees) {
     use_source(c.source);
     inside::current_limit_q20() = raw(c.limit, 20);
     flux_observability_q20 = 0;
-    inside::blend().share_q15 = c.share_q15;
+    inside::blend_share_q15() = c.share_q15;
     speed(c.speed);
     for (int n = 0; n < 200; ++n) {
       inside::reference_dq_q20().q = raw(c.iq, 20);
@@ -167,7 +167,7 @@ TEST_F(SpeedTask, ARotorThatIsFoundByItsSaliencyKeepsIt) {
   EXPECT_NEAR(room(6.0, -1.25 * even, POSITION_OBSERVER), 7.0, 0.02);
   EXPECT_NEAR(room(6.0, 2.01 * even, POSITION_OBSERVER), 10.0, 1e-5);
   EXPECT_NEAR(room(6.0, 0.0, POSITION_OBSERVER), 6.0, 1e-5);
-  inside::speed_ramp().value = inside::target_bpp() = bpp(500.0);
+  inside::ramped_bpp() = inside::target_bpp() = bpp(500.0);
   inside::current_limit_q20() = raw(10.0, 20);
   for (int n = 0; n < 5; ++n) part(TASK_SPEED);
   EXPECT_NEAR(iq(), 6.0, 1e-4);

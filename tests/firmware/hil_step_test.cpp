@@ -200,16 +200,16 @@ TEST_F(Stepping, WorkIsDoneOnItsSideOfTheStep) {
   for (const std::uint16_t side : {kEarly, std::uint16_t{0}}) {
     (void)step(empty());
     commissioning.evaluate = true;
-    inside::request().reload = true;
+    inside::request_reload();
     HilPeriod p = empty();
     p.works = {static_cast<std::uint16_t>(REPLAY_RELOADED | side), static_cast<std::uint16_t>(REPLAY_EVALUATED | side),
                static_cast<std::uint16_t>(REPLAY_RELOADED | side)};
     EXPECT_EQ(step(p).torn, 0) << side;
-    EXPECT_FALSE(commissioning.evaluate || inside::request().reload) << "an evaluation changes parameters";
+    EXPECT_FALSE(commissioning.evaluate || inside::reload_requested()) << "an evaluation changes parameters";
   }
-  inside::request().reload = true;
+  inside::request_reload();
   EXPECT_EQ(step(empty()).torn, 0);
-  EXPECT_TRUE(inside::request().reload) << "none without a word in the recording";
+  EXPECT_TRUE(inside::reload_requested()) << "none without a word in the recording";
 }
 
 // Windows are played where they came: before the step, in the call that hands the pulses over, behind it.

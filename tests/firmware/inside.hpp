@@ -16,7 +16,7 @@ extern "C" {
 
 namespace stillspin::test::inside {
 
-// State, requests, configuration, and the groups as a whole.
+// State, configuration, and the groups as a whole.
 inline auto& config() { return drive.config; }
 inline auto& config_valid() { return drive.config_valid; }
 inline auto& conflict() { return drive.conflict; }
@@ -24,14 +24,12 @@ inline auto& conflict_known() { return drive.conflict_known; }
 inline auto& control() { return drive.control; }
 inline auto& estimate() { return drive.estimate; }
 inline auto& fault() { return drive.fault; }
-inline auto& flags() { return drive.flags; }
 inline auto& heartbeat() { return drive.heartbeat; }
 int32_t& heat_sink_q8();  // board_derating_test.cpp
 inline auto& limits() { return drive.control.limits; }
 inline auto& loading() { return feature_status.loading; }
 inline auto& model() { return drive.estimate.model; }
 inline auto& periods() { return drive.periods; }
-inline auto& request() { return drive.request; }
 inline auto& samples() { return drive.samples; }
 inline auto& schedule() { return drive.schedule; }
 inline auto& sensor_trim() { return drive.estimate.trim; }
@@ -46,6 +44,48 @@ inline auto& wiring() { return drive.wiring; }
 inline auto& zero_current_a_q8() { return drive.zero_current_a_q8; }
 inline auto& zero_current_b_q8() { return drive.zero_current_b_q8; }
 
+// What has been asked for, and not been carried out.
+inline bool start_requested() { return drive.request.start; }
+inline bool stop_requested() { return drive.request.stop; }
+inline bool coast_requested() { return drive.request.coast; }
+inline bool reset_requested() { return drive.request.reset; }
+inline bool reload_requested() { return drive.request.reload; }
+/// A feature's state in the place of a start; null for none.
+inline const state_request_t* state_requested() { return drive.request.begin; }
+// In the place of who asks, and of who carries it out.
+inline void request_reload() { drive.request.reload = true; }
+inline void withdraw_start() { drive.request.start = false; }
+inline void withdraw_stop() { drive.request.stop = false; }
+inline void withdraw_reload() { drive.request.reload = false; }
+inline void withdraw_state() { drive.request.begin = nullptr; }
+// The two halves of a speed command, for what may come between them.
+inline void write_speed_request(std::int32_t rpm_q16) { drive.request.speed_rpm_q16 = rpm_q16; }
+inline void mark_speed_request() { drive.request.speed = true; }
+
+// What the state in hand says to the other steps.
+inline auto& gates_off() { return drive.flags.gates_off; }
+inline auto& invalid_periods() { return drive.flags.invalid; }
+inline auto& is_caught() { return drive.flags.caught; }
+inline auto& is_frozen() { return drive.flags.frozen; }
+inline auto& is_open_loop() { return drive.flags.open_loop; }
+inline auto& is_over() { return drive.flags.over; }
+inline auto& is_shorted() { return drive.flags.shorted; }
+inline auto& spins() { return drive.flags.spins; }
+inline auto& start_phase() { return starting.phase; }
+inline auto& state_behind() { return drive.flags.behind; }
+inline auto& unseen() { return drive.flags.unseen; }
+inline auto& wants_exclusive() { return drive.flags.wants_exclusive; }
+
+// What falls on the period.
+inline auto& is_exclusive() { return drive.schedule.exclusive; }
+inline auto& is_scheduled_turning() { return drive.schedule.turning; }
+inline auto& judges_synchronism() { return drive.schedule.judges; }
+inline auto& renews_covariance() { return drive.schedule.renews; }
+inline auto& scheduled_period() { return drive.schedule.period; }
+inline auto& scheduled_slot() { return drive.schedule.slot; }
+inline auto& scheduled_task() { return drive.schedule.task; }
+inline auto& skips_windows() { return drive.schedule.skips; }
+
 // The last period's windows.
 inline auto& frames() { return drive.estimate.frames; }
 inline auto& link_end_q16() { return drive.samples.link_end_q16; }
@@ -57,7 +97,13 @@ inline auto& windows() { return drive.samples.windows; }
 
 // Angle and speed.
 inline auto& avv() { return drive.estimate.avv; }
+inline auto& avv_angle_bam() { return drive.estimate.avv.observer.angle_bam; }
+inline auto& avv_error_bam() { return drive.estimate.avv.error_bam; }
+inline auto& avv_information() { return drive.estimate.avv.regression.information; }
+inline auto& avv_speed_bpp() { return drive.estimate.avv.observer.speed_bpp; }
 inline auto& blend() { return drive.estimate.blend; }
+inline auto& blend_region() { return drive.estimate.blend.region; }
+inline auto& blend_share_q15() { return drive.estimate.blend.share_q15; }
 inline auto& deviation_q20() { return source_deviation_q20; }
 inline auto& high_speed_estimate() { return drive.estimate.high; }
 inline auto& is_near() { return drive.estimate.is_near; }
@@ -80,6 +126,7 @@ inline auto& headroom_q20() { return drive.control.headroom_q20; }
 inline auto& loop_is_closed() { return drive.control.references.closed; }
 inline auto& per_torque_constant() { return drive.control.per_torque_constant; }
 inline auto& position_hold() { return drive.control.position_hold; }
+inline auto& ramped_bpp() { return drive.control.ramp.value; }
 inline auto& reference_dq_q20() { return drive.control.references.current_q20; }
 inline auto& speed_controller() { return drive.control.speed; }
 inline auto& speed_ramp() { return drive.control.ramp; }

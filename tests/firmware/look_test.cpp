@@ -125,7 +125,7 @@ class LookAsked : public Requests {
     run(10);
   }
   static void show(look_outcome_t outcome, int rpm) {
-    inside::request().begin = nullptr;
+    inside::withdraw_state();
     drive_look_end(outcome, rpm * 65536);
   }
 };
@@ -138,8 +138,8 @@ TEST_F(LookAsked, TheConsoleWaitsForWhatItShows) {
   } cases[] = {{LOOK_TURNS, "turns", "300 rpm"}, {LOOK_STANDS, "stands", "300 rpm"}, {LOOK_UNCLEAR, "", "300 rpm"}};
   for (const auto& c : cases) {
     EXPECT_EQ(command("look", 300), "") << "the pulses are under way";
-    ASSERT_NE(inside::request().begin, nullptr);
-    EXPECT_EQ(inside::request().begin->behind, DRIVE_READY);
+    ASSERT_NE(inside::state_requested(), nullptr);
+    EXPECT_EQ(inside::state_requested()->behind, DRIVE_READY);
     show(c.outcome, 300);
     text.clear();
     run(300);
@@ -159,10 +159,10 @@ TEST_F(LookAsked, OneThatWasBrokenOffHasNoSpeed) {
 
 TEST_F(LookAsked, IsRefusedWhereAStartIs) {
   EXPECT_NE(command("look twice"), "");
-  EXPECT_EQ(inside::request().begin, nullptr) << "it has no arguments";
+  EXPECT_EQ(inside::state_requested(), nullptr) << "it has no arguments";
   inside::state() = DRIVE_RUN;
   EXPECT_NE(command("look").find("busy"), std::string::npos);
-  EXPECT_EQ(inside::request().begin, nullptr);
+  EXPECT_EQ(inside::state_requested(), nullptr);
 }
 
 TEST_F(LookAsked, AMachineReadsTheSame) {

@@ -105,7 +105,7 @@ TEST_F(Main, WhatWasSavedIsInForceWhenLoadingEnds) {
         EXPECT_EQ(board.baud, 115200u) << "until it is known";
       } else {
         EXPECT_EQ(parameters.speed_ramp, raw(1234.0, 8));
-        EXPECT_FALSE(inside::request().reload) << "and the configuration that goes with it";
+        EXPECT_FALSE(inside::reload_requested()) << "and the configuration that goes with it";
       }
       return n < 20000 && inside::loading();
     });
@@ -157,7 +157,7 @@ TEST_F(Main, TheBackgroundLeavesADriveInTheLoopAlone) {
       if (left == 5) drive_parameters_changed();
       return left > 0;
     });
-    EXPECT_EQ(inside::request().reload, in_the_loop);
+    EXPECT_EQ(inside::reload_requested(), in_the_loop);
   }
 }
 

@@ -103,7 +103,7 @@ TEST_F(Modulation, ItsStepSaysWhatItTakes) {
   for (const bool shorted : {false, true}) {
     board.profile.clear();
     inside::state() = DRIVE_START;
-    inside::flags().shorted = shorted;
+    inside::is_shorted() = shorted;
     inside::modulate_step();
     EXPECT_EQ(spent(), CYCLES_MODULATE);
   }
@@ -179,8 +179,8 @@ TEST_F(Modulation, TheExcitationIsTheOneAskedForOrTheSources) {
         // the paper's own: long zero vectors up to three quarters of the blend's begin, and in this period beyond
         const std::int32_t enter = inside::config().blend.low_bpp / 4 * 3;
         inside::selected().speed_bpp = fast ? -enter : 1 - enter;
-        inside::blend().region = alone ? BLEND_HIGH : BLEND_BOTH;
-        inside::blend().share_q15 = 0;
+        inside::blend_region() = alone ? BLEND_HIGH : BLEND_BOTH;
+        inside::blend_share_q15() = 0;
         const bool pair = source == POSITION_OBSERVER;  // it has two windows
         excitation_t wanted = pair ? EXCITATION_CHEAPEST : EXCITATION_ALTERNATING;
         if (source == POSITION_PAPER) wanted = fast && alone ? EXCITATION_EXTENDED : EXCITATION_LONG_ZERO;
@@ -198,7 +198,7 @@ TEST_F(Modulation, AStartAndACommissioningLiveOnOppositeVectors) {
       parameters.excitation = asked;
       use_parameters();
       inside::state() = state;
-      inside::flags().shorted = false;
+      inside::is_shorted() = false;
       const bool own = state == DRIVE_START || state == DRIVE_COMMISSION;
       EXPECT_TRUE(modulates_as(own ? EXCITATION_CHEAPEST : static_cast<excitation_t>(asked))) << asked << state;
     }
@@ -207,7 +207,7 @@ TEST_F(Modulation, AStartAndACommissioningLiveOnOppositeVectors) {
 
 // Whatever voltage is asked: all lower devices on for the whole period, which three windows share.
 TEST_F(Modulation, AShortedMachineHasAPatternOfItsOwn) {
-  inside::flags().shorted = true;
+  inside::is_shorted() = true;
   inside::modulate_step();
   const sampling_config_t& c = inside::config().modulator.sampling;
   const svpwm_pattern_t& p = inside::running_pattern();
@@ -229,7 +229,7 @@ TEST_F(Modulation, AShortedMachineHasAPatternOfItsOwn) {
 }
 
 TEST_F(Modulation, OnlyAStartShortsTheMachine) {
-  inside::flags().shorted = true;
+  inside::is_shorted() = true;
   drive_enter(&drive, DRIVE_RUN);
   inside::modulate_step();
   const auto& at = inside::running_pattern().pulses.at;
@@ -253,7 +253,7 @@ TEST_F(Modulation, WithADividerOfTwoTheCommandStandsStillInEverySecondPeriod) {
       SetUp();
       parameters.current_divider = divider;
       use_parameters();
-      inside::schedule().period = period;
+      inside::scheduled_period() = period;
       inside::reference_dq_q20() = raw_dq({2.0, 5.0}, 20);
       current_controller_t copy = inside::current_controller();
       const dq_t before = inside::command_dq_q16();
@@ -271,7 +271,7 @@ TEST_F(Modulation, WithADividerOfTwoTheCommandStandsStillInEverySecondPeriod) {
 // A change of the reference that is known beforehand is fed along q, within what a command may be.
 TEST_F(Modulation, WhatIsFedComesOnTopAlongQ) {
   const auto command = [](std::int32_t feed_forward_q16) {
-    inside::schedule().period = 0;
+    inside::scheduled_period() = 0;
     current_controller_reset(&inside::current_controller());
     inside::feed_forward_q16() = feed_forward_q16;
     inside::current_step();

@@ -275,7 +275,7 @@ TEST_F(ParameterRules, AMachineThatIsRefusedIsNotLoaded) {
   const std::int32_t had = inside::config().values.link_minimum;
   parameters.inductance_d = parameters.inductance_q = raw(0.05, 20);
   parameters.link_minimum = had - 65536;
-  inside::request().reload = true;
+  inside::request_reload();
   background_step(&drive);
   EXPECT_FALSE(inside::config_valid());
   EXPECT_NE(text_of(inside::conflict()).find("too extreme"), std::string::npos);

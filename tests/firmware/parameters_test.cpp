@@ -140,11 +140,11 @@ TEST_F(Parameters, SetAndGet) {
   for (const Row& r : kRows) {
     const parameter_info_t* const info = parameter_info(static_cast<std::uint16_t>(&r - kRows.data()));
     for (const std::int32_t raw : {parameter_minimum(info), parameter_maximum(info), parameter_minimum(info) + 1}) {
-      stillspin::test::inside::request().reload = false;
+      stillspin::test::inside::withdraw_reload();
       ASSERT_EQ(parameter_set(info->id, raw), SET_OK) << r.name;
       EXPECT_EQ(parameter_get(info->id), raw) << r.name;
       EXPECT_EQ(*r.value, raw) << r.name;
-      EXPECT_TRUE(stillspin::test::inside::request().reload) << r.name;
+      EXPECT_TRUE(stillspin::test::inside::reload_requested()) << r.name;
     }
   }
   parameters_reset();
@@ -157,10 +157,10 @@ TEST_F(Parameters, ARefusedValueChangesNothing) {
     for (const std::int32_t raw :
          {parameter_minimum(info) - 1, parameter_maximum(info) + 1, std::numeric_limits<std::int32_t>::min(),
           std::numeric_limits<std::int32_t>::max()}) {
-      stillspin::test::inside::request().reload = false;
+      stillspin::test::inside::withdraw_reload();
       EXPECT_EQ(parameter_set(info->id, raw), SET_RANGE) << r.name;
       EXPECT_EQ(parameter_get(info->id), parameter_initial(info)) << r.name;
-      EXPECT_FALSE(stillspin::test::inside::request().reload) << r.name;
+      EXPECT_FALSE(stillspin::test::inside::reload_requested()) << r.name;
     }
   }
 }
@@ -173,7 +173,7 @@ TEST_F(Parameters, UnknownNumbers) {
     ASSERT_EQ(parameter_set(static_cast<std::uint16_t>(id), 1), SET_UNKNOWN) << id;
     ASSERT_EQ(parameter_get(static_cast<std::uint16_t>(id)), 0) << id;
   }
-  EXPECT_FALSE(stillspin::test::inside::request().reload);
+  EXPECT_FALSE(stillspin::test::inside::reload_requested());
   EXPECT_EQ(parameter_info(parameter_count()), nullptr);
   EXPECT_EQ(parameter_info(0xFFFF), nullptr);
 }

@@ -31,14 +31,14 @@ class PolarityWatch : public Drive {
   }
   static void source(std::int32_t source) {
     use_source(source);
-    inside::avv().regression.information = 1000000;
-    inside::avv().error_bam = 0;
+    inside::avv_information() = 1000000;
+    inside::avv_error_bam() = 0;
     inside::observer().regression = {};
     inside::observer().regression.information = 1000000;
     inside::observer().regression.spread_q8 = raw(40000.0, 8);
   }
   static bool step(schedule_slot_t turn) {
-    inside::schedule().slot = turn;
+    inside::scheduled_slot() = turn;
     return polarity_watch_step(&drive);
   }
   static double axis() { return rad(polarity_watch.axis.angle_bam); }
@@ -51,8 +51,8 @@ TEST_F(PolarityWatch, TheAxisFollowsWhatTheWindowsShow) {
     for (const double off : {0.1, -0.1, 1.4, -1.4}) {
       SetUp();
       source(POSITION_AVV);
-      inside::avv().observer.angle_bam = bam(0.5 + 0.75 * off + half);
-      inside::avv().error_bam = static_cast<std::int32_t>(bam(0.25 * off));
+      inside::avv_angle_bam() = bam(0.5 + 0.75 * off + half);
+      inside::avv_error_bam() = static_cast<std::int32_t>(bam(0.25 * off));
       for (int n = 0; n < 4; ++n) EXPECT_FALSE(step(kNone));
       EXPECT_FALSE(step(kFollow));
       const double all = std::clamp(5.0 * off, -kPi, kPi);  // an angle is no more than half a turn
@@ -123,11 +123,11 @@ TEST_F(PolarityWatch, BlindItTakesTheAngleInUse) {
     SetUp();
     source(POSITION_AVV);
     inside::selected() = {bam(-1.0), bpp(70.0), 0, 32767};
-    inside::avv().observer.angle_bam = bam(0.5);
+    inside::avv_angle_bam() = bam(0.5);
     const double limit = real(parameters.current_limit, 20);
     if (why == 1) inside::current_dq_q20().q = raw(0.51 * limit, 20);
     if (why == 2) inside::current_dq_q20().q = raw(-0.51 * limit, 20);
-    if (why == 3) inside::avv().regression.information = 0;
+    if (why == 3) inside::avv_information() = 0;
     if (why == 0) inside::current_dq_q20().q = raw(0.49 * limit, 20);
     polarity_watch.sign.agreed = 18;
     inside::command_dq_q16() = {raw(1.0, 16), raw(2.0, 16)};
@@ -210,7 +210,7 @@ TEST_F(PolarityWatch, AnAngleInUseThatIsOffIsNoReversedMagnet) {
       int n = 0;
       for (; n < 600 && polarity_watch.open; ++n) {
         const std::uint32_t now = start + static_cast<std::uint32_t>(speed) * static_cast<std::uint32_t>(n + 1);
-        inside::avv().observer.angle_bam = now;
+        inside::avv_angle_bam() = now;
         inside::selected().angle_bam = now + bam(off < 0.0 ? off + kTurn : off);
         reversed = step(n % 5 == 3 ? kRegress : n % 5 == 4 ? kFollow : kNone);
       }
@@ -248,7 +248,7 @@ TEST_F(PolarityWatch, WhatIsSeenBesideTheRegressionIsJudgedWithTheAxis) {
     EXPECT_FALSE(step(kRegress));
     EXPECT_EQ(polarity_watch.sign.periods, 1);
     EXPECT_EQ(polarity_watch.sign.expected_q16, 0);
-    if (blind) inside::avv().regression.information = 0;
+    if (blind) inside::avv_information() = 0;
     EXPECT_FALSE(step(kFollow));
     EXPECT_EQ(polarity_watch.sign.periods, 0);
     EXPECT_EQ(polarity_watch.sign.expected_q16 == 0, blind);

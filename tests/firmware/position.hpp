@@ -26,7 +26,7 @@ class Position : public Drive {
     use_source(source);
     ASSERT_TRUE(drive_config_load(&inside::config()));
     inside::state() = DRIVE_RUN;
-    inside::schedule().turning = true;
+    inside::is_scheduled_turning() = true;
     polarity_watch.open = false;
     inside::preset(kHere, 0);
     inside::current_dq_q20() = {0, 0};
@@ -59,8 +59,8 @@ class Position : public Drive {
     }
   }
   static void blend(blend_region_t region, double share_of_low) {
-    inside::blend().region = region;
-    inside::blend().share_q15 = static_cast<std::int32_t>(share_of_low * 32767.0);
+    inside::blend_region() = region;
+    inside::blend_share_q15() = static_cast<std::int32_t>(share_of_low * 32767.0);
   }
 };
 
@@ -69,7 +69,7 @@ class Sources : public Position {
  protected:
   /// In a period of this turn.
   static void estimate(schedule_slot_t turn = SCHEDULE_SLOTS) {
-    inside::schedule().slot = turn;
+    inside::scheduled_slot() = turn;
     inside::estimate_step();
   }
   static dq_t measured() { return inside::current_dq_q20(); }

@@ -16,7 +16,7 @@ using namespace stillspin::test;
 TEST_F(Sources, ACommissioningsSpinRunsOnTheObserver) {
   run_with(POSITION_ENCODER);
   inside::state() = DRIVE_COMMISSION;
-  inside::flags().spins = true;
+  inside::spins() = true;
   inside::observer().angle_bam = kThere;
   encoder.observer.angle_bam = kHere;
   estimate();
@@ -73,7 +73,7 @@ TEST_F(Sources, BesideTheEncoderTheDeviationIsThatOfTheFrameInUse) {
   estimate();
   const Vector slope = Vector{0.02, 0.01}.turned(-rad(kHere) - 0.3);
   EXPECT_NEAR(real(inside::deviation_q20(), 20), slope.y, 1e-4);
-  EXPECT_NE(inside::avv().regression.information, 1) << "AVV looks on";
+  EXPECT_NE(inside::avv_information(), 1) << "AVV looks on";
 }
 
 // What has been seen while somebody else had the shaft is worth more than the angle in use.
@@ -98,14 +98,14 @@ TEST_F(Sources, BesideTheEncoderSomebodyLooksOn) {
     inside::preset(kHere, 0);
     parameters.flux_beside = beside;
     use_parameters();
-    inside::avv().observer.angle_bam = kThere;
+    inside::avv_angle_bam() = kThere;
     see_machine(kHere);
     estimate();
     if (beside == 0) {
-      EXPECT_NEAR(rad(inside::avv().error_bam), -rad(kThere - kHere), 0.01);
-      EXPECT_EQ(inside::high_speed_estimate().angle_bam, inside::avv().observer.angle_bam);
+      EXPECT_NEAR(rad(inside::avv_error_bam()), -rad(kThere - kHere), 0.01);
+      EXPECT_EQ(inside::high_speed_estimate().angle_bam, inside::avv_angle_bam());
     } else {
-      EXPECT_EQ(inside::avv().error_bam, 0);
+      EXPECT_EQ(inside::avv_error_bam(), 0);
       EXPECT_EQ(inside::high_speed_estimate().angle_bam, encoder.observer.angle_bam) << "at rest the flux follows";
     }
   }

@@ -112,7 +112,7 @@ TEST_F(Sources, BesideTheObserverTheFluxLearnsWithoutWindows) {
     flux_source_follow(&drive, &inside::selected());
     flux_observer.pause = 1;
     see(windows);
-    inside::schedule().skips = false;
+    inside::skips_windows() = false;
     board.profile.clear();
     estimate();
     EXPECT_EQ(flux_observer.pause > 1, windows == 0);
@@ -135,8 +135,8 @@ TEST_F(Sources, WhileAVectorIsTurnedTheSourceLooksOn) {
     run_with(POSITION_OBSERVER);
     see(0);
     inside::state() = DRIVE_START;
-    inside::flags().open_loop = true;
-    inside::start_found().phase = START_IF_RAMP;
+    inside::is_open_loop() = true;
+    inside::start_phase() = START_IF_RAMP;
     if_ramp_config.align_periods = 500;
     if_ramp.tick = aligned ? 500 : 499;
     if_ramp.angle_bam = kThere;
@@ -149,7 +149,7 @@ TEST_F(Sources, WhileAVectorIsTurnedTheSourceLooksOn) {
     EXPECT_EQ(inside::selected().speed_bpp, 4321);
     EXPECT_EQ(inside::seen().angle_bam, inside::observer().angle_bam);
     EXPECT_NEAR(rad(inside::seen().angle_bam - (aligned ? kThere : kHere)), 0.0, 1e-3);
-    EXPECT_EQ(inside::avv().observer.angle_bam, kHere) << "all of them are set at rest";
+    EXPECT_EQ(inside::avv_angle_bam(), kHere) << "all of them are set at rest";
   }
 }
 
@@ -161,8 +161,8 @@ TEST_F(Sources, AFluxFollowsAVectorUntilItIsUp) {
     see(0);
     blend(BLEND_HIGH, 0.0);
     inside::state() = DRIVE_START;
-    inside::flags().open_loop = true;
-    inside::start_found().phase = START_IF_RAMP;
+    inside::is_open_loop() = true;
+    inside::start_phase() = START_IF_RAMP;
     if_ramp.tick = if_ramp_config.align_periods = 500;
     if_ramp.angle_bam = kThere;
     if_ramp.speed_bpp = if_ramp_config.speed_bpp - (up ? 0 : 1);
@@ -185,8 +185,8 @@ TEST_F(Sources, AFluxThatLooksOnKnowsTheCurrentsInItsOwnFrame) {
     see(0);
     blend(BLEND_HIGH, 0.0);
     inside::state() = DRIVE_START;
-    inside::flags().open_loop = true;
-    inside::start_found().phase = START_IF_RAMP;
+    inside::is_open_loop() = true;
+    inside::start_phase() = START_IF_RAMP;
     if_ramp.tick = if_ramp_config.align_periods;
     if_ramp.speed_bpp = if_ramp_config.speed_bpp;
     inside::reference_dq_q20() = inside::current_dq_q20() = raw_dq({0.0, 14.0}, 20);

@@ -98,7 +98,7 @@ TEST_F(Learning, AStartLearnsTheSensorsInTheVoltagesTurn) {
       inside::windows()[k].change_q19.beta += raw(k == 0 ? 0.03 : -0.03, 19);
     }
     inside::state() = DRIVE_START;
-    inside::schedule().turning = false;
+    inside::is_scheduled_turning() = false;
     estimate(slot);
     EXPECT_EQ(inverse_inductances(), slot == SLOT_INDUCTANCE) << slot;
     EXPECT_EQ(sensors(), slot == SLOT_VOLTAGE) << slot;
@@ -120,16 +120,16 @@ TEST_F(Learning, ACommissioningLearnsWhereItAdapts) {
       see_machine(kHere);
       inside::windows()[0].change_q19.alpha += raw(0.06, 19);
       inside::state() = DRIVE_COMMISSION;
-      inside::schedule().turning = false;
-      inside::flags().frozen = !adapting;
+      inside::is_scheduled_turning() = false;
+      inside::is_frozen() = !adapting;
       commissioning.predicting = predicting;
       inside::avv().observer = {kThere, 1000, raw(500.0, 8), 0};
       inside::current_dq_q20() = {0, 0};
-      const std::int32_t error = inside::avv().error_bam = 4711;
+      const std::int32_t error = inside::avv_error_bam() = 4711;
       estimate(SLOT_INDUCTANCE);
       EXPECT_EQ(inverse_inductances(), adapting && !predicting);
-      EXPECT_EQ(inside::avv().error_bam == error, predicting) << "no measurement at all";
-      EXPECT_EQ(inside::selected().angle_bam, inside::avv().observer.angle_bam);
+      EXPECT_EQ(inside::avv_error_bam() == error, predicting) << "no measurement at all";
+      EXPECT_EQ(inside::selected().angle_bam, inside::avv_angle_bam());
       if (!predicting) continue;
       EXPECT_EQ(inside::selected().angle_bam, kThere + 1000u);
       EXPECT_EQ(inside::selected().speed_bpp, 1000) << "the load as of now is left out";

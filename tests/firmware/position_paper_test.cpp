@@ -22,14 +22,14 @@ TEST_F(Sources, ThePapersIdleEstimatorKnowsTheSpeed) {
   zvv_preset(&paper_zvv, kHere, 5000, -900);
   inside::avv().observer.load_accel_q8 = 77;
   estimate();
-  EXPECT_EQ(inside::avv().observer.speed_bpp, paper_zvv.integral_q8bpp / 256);
+  EXPECT_EQ(inside::avv_speed_bpp(), paper_zvv.integral_q8bpp / 256);
   EXPECT_LT(inside::avv().observer.load_accel_q8, 0);
   EXPECT_EQ(inside::avv().observer.load_accel_q8, paper_zvv.load_accel_q8);
   run_with(POSITION_PAPER);
   blend(BLEND_HIGH, 0.0);
-  inside::avv().observer.speed_bpp = bpp_of(200);
+  inside::avv_speed_bpp() = bpp_of(200);
   estimate();
-  EXPECT_EQ(paper_zvv.speed_bpp, inside::avv().observer.speed_bpp);
+  EXPECT_EQ(paper_zvv.speed_bpp, inside::avv_speed_bpp());
   EXPECT_NEAR(rad_per_s(paper_zvv.speed_bpp), 200.0 / 60.0 * kTurn * 4.0, 1.0);
 }
 
@@ -45,7 +45,7 @@ TEST_F(Sources, ThePapersLayoutGoesByTurnsInTheBlend) {
     std::string seen;
     for (int period = 0; period < DRIVE_PERIODS_PER_MS; ++period) {
       // what is looked at in this one
-      inside::schedule().period =
+      inside::scheduled_period() =
           static_cast<std::uint16_t>((period + DRIVE_PERIODS_PER_MS - 2) % DRIVE_PERIODS_PER_MS);
       const excitation_t e = paper->excitation(&drive);
       seen += e == EXCITATION_LONG_ZERO ? 'z' : e == EXCITATION_EXTENDED ? 'e' : '?';
@@ -76,7 +76,7 @@ TEST_F(Sources, AvvAsPrintedWhereItIsAskedFor) {
     inside::selected().speed_bpp = bpp_of(200);
     see_machine(kHere);
     estimate();
-    EXPECT_EQ(inside::avv().regression.information > 0, !printed);
+    EXPECT_EQ(inside::avv_information() > 0, !printed);
   }
 }
 
@@ -93,10 +93,10 @@ TEST_F(Sources, ByTurnsEachHasItsOwnWindows) {
     } else {
       see_machine(kHere);
     }
-    inside::schedule().task = of_zvv ? TASK_SLOT : TASK_SPEED;  // which without turns would be the other's
+    inside::scheduled_task() = of_zvv ? TASK_SLOT : TASK_SPEED;  // which without turns would be the other's
     estimate();
     EXPECT_EQ(paper_zvv.waited, of_zvv ? 0 : 1);
-    EXPECT_EQ(inside::avv().regression.information > 0, !of_zvv);
+    EXPECT_EQ(inside::avv_information() > 0, !of_zvv);
   }
 }
 
@@ -107,11 +107,11 @@ TEST_F(Sources, BelowTheBlendAvvIsLedUntilTheTurnsBegin) {
     run_with(POSITION_PAPER);
     blend(BLEND_LOW, 1.0);
     inside::selected().speed_bpp = bpp_of(rpm);
-    inside::avv().observer.angle_bam = kThere;
+    inside::avv_angle_bam() = kThere;
     see(1);
     estimate();
     const std::uint32_t led = rpm < 45 ? paper_zvv.angle_bam : kThere;
-    EXPECT_NEAR(rad(inside::avv().observer.angle_bam - led), 0.0, 1e-3) << rpm;
+    EXPECT_NEAR(rad(inside::avv_angle_bam() - led), 0.0, 1e-3) << rpm;
   }
 }
 
@@ -136,7 +136,7 @@ TEST_F(Sources, WithoutTurnsZvvLooksAtWhatThereIs) {
   inside::selected().speed_bpp = bpp_of(50);
   inside::reference_dq_q20().d = raw(8.0, 20);
   see(2);
-  inside::schedule().task = TASK_SLOT;
+  inside::scheduled_task() = TASK_SLOT;
   estimate();
   EXPECT_EQ(paper_zvv.waited, 0);
 }

@@ -64,8 +64,8 @@ TEST_F(Sources, ABlindStartMeasuresNothing) {
     inside::windows()[0].current_q20 = {raw(1.0, 20), 0};
     inside::current_dq_q20() = {0, 0};
     inside::state() = DRIVE_START;
-    inside::schedule().turning = false;
-    inside::flags().invalid = invalid;
+    inside::is_scheduled_turning() = false;
+    inside::invalid_periods() = invalid;
     estimate();
     EXPECT_EQ(measured().d != 0, invalid == 0) << invalid;
   }
@@ -78,7 +78,7 @@ TEST_F(Sources, TheTorqueAcceleratesOnceThePolarityIsKnown) {
     run_with(POSITION_OBSERVER);
     see(0);
     inside::current_dq_q20() = {0, raw(4.0, 20)};
-    inside::schedule().turning = !starting;
+    inside::is_scheduled_turning() = !starting;
     inertia_match.phase = INERTIA_RUN_UP;
     inertia_match.start_base_q8 = raw(-3.0, 8);
     inertia_match.gained_bpp = 100;
@@ -97,8 +97,8 @@ TEST_F(Sources, WhileAVectorIsTurnedTheTorqueIsThatOfTheAngleSeen) {
   run_with(POSITION_OBSERVER);
   see(0);
   inside::state() = DRIVE_START;
-  inside::flags().open_loop = true;
-  inside::start_found().phase = START_IF_RAMP;
+  inside::is_open_loop() = true;
+  inside::start_phase() = START_IF_RAMP;
   inside::seen().angle_bam = kHere + 0x40000000u;  // a quarter turn ahead: i_d is i_q against the rotation there
   inside::current_dq_q20() = {raw(4.0, 20), 0};
   estimate();
@@ -114,8 +114,8 @@ TEST_F(Sources, WhileAVectorIsTurnedTheTorqueIsThatOfTheWindowsToo) {
   for (const int source : {POSITION_OBSERVER, POSITION_FLUX_CONV}) {
     run_with(source);
     inside::state() = DRIVE_START;
-    inside::flags().open_loop = true;
-    inside::start_found().phase = START_IF_RAMP;
+    inside::is_open_loop() = true;
+    inside::start_phase() = START_IF_RAMP;
     for (int k = 0; k < 2; ++k) inside::windows()[k].current_q20 = raw_ab(Vector{4.0, 0.0}.turned(rad(kHere)), 20);
     inside::seen().angle_bam = kHere + 0x40000000u;
     estimate();
@@ -132,8 +132,8 @@ TEST_F(Sources, WhileAVectorIsTurnedTheWindowsAreSeenWhereTheSourceWas) {
   for (const bool measured : {true, false}) {
     run_with(POSITION_OBSERVER);
     inside::state() = DRIVE_START;
-    inside::flags().open_loop = true;
-    inside::start_found().phase = START_IF_RAMP;
+    inside::is_open_loop() = true;
+    inside::start_phase() = START_IF_RAMP;
     inside::seen() = {kThere, raw(speed / kTurn, 32), 0, 32767};
     const double middle = rad(kThere) + 0.5 * speed;  // half a period from where it was at the end of the last one
     for (int k = 0; k < 2; ++k) {
@@ -188,8 +188,8 @@ TEST_F(Sources, TheScheduleDecidesOnWindowsAndCovariance) {
       deviation_observer_t& o = inside::observer();
       o.p_aa = o.p_ss = raw(0.02, 20);
       o.p_ll = raw(0.02, 20);
-      inside::schedule().skips = skips;
-      inside::schedule().renews = renews;
+      inside::skips_windows() = skips;
+      inside::renews_covariance() = renews;
       estimate();
       EXPECT_EQ(o.residual.span_ticks, skips ? 0 : 6000) << renews;
       EXPECT_EQ(o.gathered.periods == 0, renews) << skips;
@@ -205,7 +205,7 @@ TEST_F(Sources, AHeldShaftHasTheFastObserver) {
     parameters.map_known = 1;
     ASSERT_TRUE(drive_config_load(&inside::config()));
     inside::schedule().held = held;
-    inside::schedule().renews = true;
+    inside::renews_covariance() = true;
     deviation_observer_t& o = inside::observer();
     o.p_aa = o.p_as = o.p_al = o.p_ss = o.p_sl = 0;
     o.p_ll = raw(0.02, 20);
@@ -220,12 +220,12 @@ TEST_F(Sources, AHeldShaftHasTheFastObserver) {
 TEST_F(Sources, AvvBesideTheObserverSeesItsOwnError) {
   run_with(POSITION_OBSERVER_AVV);
   blend(BLEND_BOTH, 0.5);
-  inside::avv().observer.angle_bam = kThere;
+  inside::avv_angle_bam() = kThere;
   see_machine(kHere);
   estimate();
-  EXPECT_NEAR(rad(inside::avv().error_bam), -rad(kThere - kHere), 0.01);
+  EXPECT_NEAR(rad(inside::avv_error_bam()), -rad(kThere - kHere), 0.01);
   EXPECT_EQ(inside::low_speed_estimate().angle_bam, inside::observer().angle_bam);
-  EXPECT_EQ(inside::high_speed_estimate().angle_bam, inside::avv().observer.angle_bam);
+  EXPECT_EQ(inside::high_speed_estimate().angle_bam, inside::avv_angle_bam());
   const double low = rad(inside::low_speed_estimate().angle_bam - kHere),
                high = rad(inside::high_speed_estimate().angle_bam - kHere);
   EXPECT_NEAR(rad(inside::selected().angle_bam - kHere), 0.5 * (low + high), 0.01 * (high - low) + 1e-3);
@@ -241,7 +241,7 @@ TEST_F(Sources, AvvLearnsWithin15DegreesOnly) {
       const bool before = std::fabs(degrees) > 15.0;
       inside::is_near() = before;
       estimate(slot);
-      EXPECT_NEAR(rad(inside::avv().error_bam) / kDegree, degrees, 0.3);
+      EXPECT_NEAR(rad(inside::avv_error_bam()) / kDegree, degrees, 0.3);
       EXPECT_EQ(inside::is_near(), slot == SLOT_REGRESSION ? !before : before) << degrees;
     }
   }
@@ -298,8 +298,8 @@ TEST_F(Sources, AnAxisIsLookedForByAvvAlone) {
   inside::preset_axis(kThere, 777);
   EXPECT_EQ(inside::selected().angle_bam, kThere);
   EXPECT_EQ(inside::selected().speed_bpp, 777);
-  EXPECT_EQ(inside::avv().observer.angle_bam, kThere);
-  EXPECT_EQ(inside::avv().observer.speed_bpp, 777);
+  EXPECT_EQ(inside::avv_angle_bam(), kThere);
+  EXPECT_EQ(inside::avv_speed_bpp(), 777);
   EXPECT_EQ(inside::observer().angle_bam, kHere);
 }
 
@@ -308,13 +308,13 @@ TEST_F(Sources, WithTheGatesOffNoEstimatorIsAtWork) {
   for (const bool off : {true, false}) {
     run_with(POSITION_OBSERVER);
     inside::state() = DRIVE_START;
-    inside::schedule().turning = false;
-    inside::flags().gates_off = off;
+    inside::is_scheduled_turning() = false;
+    inside::gates_off() = off;
     see_machine(kHere);
     inside::windows()[0].current_q20 = {raw(1.0, 20), 0};
     estimate();
     EXPECT_NE(measured().d, 0);
-    EXPECT_EQ(inside::avv().regression.information > 0, !off);
+    EXPECT_EQ(inside::avv_information() > 0, !off);
   }
 }
 

@@ -52,7 +52,7 @@ TEST_F(Position, ThePapersEstimatorsTakeTurns) {
     for (const bool below : {false, true}) {
       run_with(POSITION_PAPER);
       blend(below ? BLEND_LOW : BLEND_BOTH, below ? 1.0 : 0.5);
-      inside::schedule().task = task;
+      inside::scheduled_task() = task;
       inside::windows()[0].change_q19 = raw_change({0.0, 0.02}, 3000);
       inside::windows()[1].voltage_q19 = {raw(150.0, 19), 0};
       inside::low_speed_estimate().quality_q15 = 12345;
@@ -60,7 +60,7 @@ TEST_F(Position, ThePapersEstimatorsTakeTurns) {
       const bool of_zvv = (task == TASK_SPEED || task == TASK_FIELD) != below;
       EXPECT_EQ(paper_zvv.deviation_q20 != 0, of_zvv) << task;
       EXPECT_EQ(inside::low_speed_estimate().quality_q15 == 12345, !of_zvv) << task;
-      EXPECT_EQ(inside::avv().regression.information > 0, !of_zvv) << task;
+      EXPECT_EQ(inside::avv_information() > 0, !of_zvv) << task;
       EXPECT_EQ(inside::low_speed_estimate().angle_bam, paper_zvv.angle_bam) << task;
     }
   }
@@ -86,8 +86,8 @@ TEST_F(Position, ZvvTurnsItsWindowsIntoItsOwnFrameBesideAvv) {
   NEEDS("sources/paper");
   run_with(POSITION_PAPER);
   blend(BLEND_BOTH, 0.5);
-  inside::schedule().task = TASK_SPEED;
-  inside::high_speed_estimate().angle_bam = inside::avv().observer.angle_bam = kThere;
+  inside::scheduled_task() = TASK_SPEED;
+  inside::high_speed_estimate().angle_bam = inside::avv_angle_bam() = kThere;
   inside::windows()[0].change_q19 = raw_change({0.02, 0.01}, 3000);
   inside::estimate_step();
   const Vector slope = Vector{0.02, 0.01}.turned(-rad(kHere));
@@ -99,7 +99,7 @@ TEST_F(Position, WithoutWindowsNothingIsNearEnoughToLearnFrom) {
   for (const std::uint16_t windows : {2, 0}) {
     run_with(POSITION_OBSERVER);
     see(windows);
-    inside::schedule().slot = SLOT_REGRESSION;
+    inside::scheduled_slot() = SLOT_REGRESSION;
     inside::is_near() = windows == 0;
     inside::estimate_step();
     EXPECT_EQ(inside::is_near(), windows > 0);
@@ -111,7 +111,7 @@ TEST_F(Position, WhatWasNotNearIsNotLearntFromLater) {
   for (const bool near : {true, false}) {
     for (const double off : {0.0, 14.9, -14.9, 15.1, -15.1}) {
       run_with(POSITION_OBSERVER);
-      inside::schedule().slot = SLOT_LOOK;
+      inside::scheduled_slot() = SLOT_LOOK;
       inside::is_near() = near;
       regression_t& r = inside::observer().regression;
       r = {};
@@ -121,7 +121,7 @@ TEST_F(Position, WhatWasNotNearIsNotLearntFromLater) {
       r.mirror_q16 = static_cast<std::int32_t>(half * (std::cos(turned) - 1.0));
       r.cross_q16 = static_cast<std::int32_t>(half * std::sin(turned));
       inside::estimate_step();
-      EXPECT_NEAR(rad(static_cast<std::uint32_t>(inside::avv().error_bam)) / kDegree, off, 0.01);
+      EXPECT_NEAR(rad(static_cast<std::uint32_t>(inside::avv_error_bam())) / kDegree, off, 0.01);
       EXPECT_EQ(inside::is_near(), near && std::fabs(off) < 15.0) << off;
     }
   }
@@ -157,7 +157,7 @@ TEST_F(Position, WindowsBesideTheFluxAreRegressedAtLowSpeedAndForTheWatch) {
         run_with(POSITION_FLUX_CONV);
         blend(region, 0.5);
         polarity_watch.open = watched;
-        inside::schedule().slot = asked ? SLOT_REGRESSION : SCHEDULE_SLOTS;
+        inside::scheduled_slot() = asked ? SLOT_REGRESSION : SCHEDULE_SLOTS;
         inside::is_near() = !asked;
         inside::observer().regressed_bam = kThere;
         inside::estimate_step();
@@ -188,7 +188,7 @@ TEST_F(Position, TheCurrentIsThatInTheFrameInUse) {
       blend(c.region, c.share);
       inside::windows()[0].current_q20 = {raw(3.0, 20), raw(1.0, 20)};
       if (starting) inside::state() = DRIVE_START;
-      inside::schedule().turning = !starting;
+      inside::is_scheduled_turning() = !starting;
       inside::selected().angle_bam = kThere;
       inside::high_speed_estimate().angle_bam = kHere + 0x01000000u;
       inside::estimate_step();
@@ -238,13 +238,13 @@ TEST_F(Position, TheRampWaitsForAShaftThatMayNotBeBrakedFaster) {
       for (const bool limited : {false, true}) {
         run_with(POSITION_OBSERVER);
         const std::int32_t now = sign * bpp_of(1000);
-        inside::selected().speed_bpp = inside::speed_ramp().value = now;
+        inside::selected().speed_bpp = inside::ramped_bpp() = now;
         inside::target_bpp() = now + sign * change * bpp_of(500);
         inside::limits() = limited ? LIMIT_BRAKING : 0;
-        inside::schedule().task = TASK_SPEED;
+        inside::scheduled_task() = TASK_SPEED;
         inside::speed_step();
         const bool waits = limited && change < 0;
-        EXPECT_EQ(inside::speed_ramp().value == now, waits) << sign << change << limited;
+        EXPECT_EQ(inside::ramped_bpp() == now, waits) << sign << change << limited;
       }
     }
   }

@@ -21,7 +21,7 @@ class ProtectionLimits : public Drive {
     Drive::SetUp();
     make_run();
     polarity_watch.open = false;
-    inside::schedule().judges = false;
+    inside::judges_synchronism() = false;
     inside::modulator().is_alternating = false;
     inside::window_count() = 1;
     currents({0, 0});
@@ -93,7 +93,7 @@ TEST_F(ProtectionLimits, GatesThatAreMeantToBeOffAreNoFault) {
       for (const bool pin : {false, true}) {
         SetUp();
         inside::state() = DRIVE_START;
-        inside::flags().gates_off = meant;
+        inside::gates_off() = meant;
         if (runs) drive_enter(&drive, DRIVE_RUN);
         board.gates_on = false;
         board.tripped_by_pin = pin;
@@ -119,12 +119,12 @@ TEST_F(ProtectionLimits, TheSpanOfThePapersWindowsIsThatOfAll) {
   for (const auto& [first, second] : {std::pair{4000, 0}, {1000, 3000}, {3000, 1000}}) {
     SetUp();
     use_source(POSITION_PAPER);
-    inside::schedule().judges = true;
+    inside::judges_synchronism() = true;
     inside::window_count() = second == 0 ? 1 : 2;
     inside::windows()[0].span_ticks = static_cast<std::int16_t>(first);
     inside::windows()[1].span_ticks = static_cast<std::int16_t>(second);
     inside::avv().regression = {};
-    inside::avv().regression.information = 1;  // it has seen something
+    inside::avv_information() = 1;  // it has seen something
     synchronism_reset(&inside::synchronism());
     (void)judged();
     const synchronism_t& s = inside::synchronism();
@@ -140,7 +140,7 @@ TEST_F(ProtectionLimits, AvvBesideTheEncoderIsNoDoubtOfTheAngle) {
   for (const std::int32_t source : {POSITION_ENCODER, POSITION_OBSERVER_AVV}) {
     SetUp();
     use_source(source);
-    inside::schedule().judges = true;
+    inside::judges_synchronism() = true;
     inside::windows()[0] = {{0, 0}, {0, 0}, {0, 0}, 5000, 5000, true};
     inside::selected().speed_bpp = 0;
     inside::low_speed_estimate().quality_q15 = inside::high_speed_estimate().quality_q15 = 32767;
@@ -158,8 +158,8 @@ TEST_F(ProtectionLimits, InTheFirstTurnsAnEncoderMayBeReversed) {
       SetUp();
       use_source(source);
       polarity_watch.open = first_turns;
-      inside::schedule().judges = true;
-      inside::schedule().slot = SCHEDULE_SLOTS;
+      inside::judges_synchronism() = true;
+      inside::scheduled_slot() = SCHEDULE_SLOTS;
       inside::selected().speed_bpp = bpp_of(3 * 3300);
       inside::diverged_periods() = 60000;
       encoder.aligned_bam = 0;

@@ -40,7 +40,7 @@ class Protection : public Drive {
   }
   /// These windows are no machine's.
   static void trust_synchronism() { inside::config().synchronism.bad_periods = 1000000; }
-  static void hold_avv_apart() { inside::avv().observer.angle_bam = encoder.observer.angle_bam + 0x31C71C72u; }
+  static void hold_avv_apart() { inside::avv_angle_bam() = encoder.observer.angle_bam + 0x31C71C72u; }
 };
 
 TEST_F(Protection, EachPhaseTripsInEitherDirection) {
@@ -79,7 +79,7 @@ TEST_F(Protection, ASpeedFarBeyondTheLimitIsDivergence) {
     const auto speed = static_cast<std::int32_t>(bpp_of(3300) * share);
     const int allowed = parameters.divergence_time * DRIVE_PERIODS_PER_MS;
     const int n = while_running(2 * allowed, [&] {
-      inside::avv().observer.speed_bpp = speed;
+      inside::avv_speed_bpp() = speed;
       inside::selected().speed_bpp = speed;
     });
     EXPECT_EQ(inside::state(), share > 1.5 ? DRIVE_FAULT : DRIVE_RUN);
@@ -135,9 +135,9 @@ TEST_F(Protection, SourcesMustAgreeWhereBothAreInUse) {
     trust_synchronism();
     use_source(c.source);
     inside::diverged_periods() = static_cast<std::uint16_t>(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
-    inside::schedule().judges = true;
+    inside::judges_synchronism() = true;
     inside::modulator().is_alternating = true;
-    inside::blend().region = c.region;
+    inside::blend_region() = c.region;
     inside::low_speed_estimate().quality_q15 = inside::high_speed_estimate().quality_q15 = 32767;
     inside::high_speed_estimate().angle_bam = inside::low_speed_estimate().angle_bam + bam(1.2);
     inside::protect_step();
@@ -154,7 +154,7 @@ TEST_F(Protection, TheLimitOfADisagreementIsInDegrees) {
     parameters.divergence_limit = raw(50.0, 16);
     use_parameters();
     inside::diverged_periods() = static_cast<std::uint16_t>(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
-    inside::schedule().judges = true;
+    inside::judges_synchronism() = true;
     inside::low_speed_estimate().quality_q15 = inside::high_speed_estimate().quality_q15 = 32767;
     inside::high_speed_estimate().angle_bam = inside::low_speed_estimate().angle_bam + bam(part * 50.0 * kDegree);
     inside::protect_step();
@@ -165,7 +165,7 @@ TEST_F(Protection, TheLimitOfADisagreementIsInDegrees) {
 // A disagreement counts from divergence_limit on, and where it ends the time begins anew.
 TEST_F(Protection, DivergenceIsAsLargeAndAsLongAsTheParametersSay) {
   const auto apart = [](double degrees) {
-    inside::avv().observer.angle_bam = inside::high_speed_estimate().angle_bam =
+    inside::avv_angle_bam() = inside::high_speed_estimate().angle_bam =
         encoder.observer.angle_bam + static_cast<std::uint32_t>(std::ldexp(degrees / 360.0, 32));
   };
   make_run();
@@ -190,7 +190,7 @@ TEST_F(Protection, AnEstimatorWithoutAnAngleIsNoSecondOpinion) {
     make_run();
     trust_synchronism();
     inside::diverged_periods() = static_cast<std::uint16_t>(parameters.divergence_time * DRIVE_PERIODS_PER_MS);
-    inside::schedule().judges = true;
+    inside::judges_synchronism() = true;
     inside::low_speed_estimate().quality_q15 = low;
     inside::high_speed_estimate().quality_q15 = high;
     inside::high_speed_estimate().angle_bam = inside::low_speed_estimate().angle_bam + ANGLE_BAM_HALF_TURN;
@@ -203,7 +203,7 @@ TEST_F(Protection, AnEstimatorWithoutAnAngleIsNoSecondOpinion) {
 TEST_F(Protection, ResidualsAreJudgedOnce) {
   make_run();
   use_source(POSITION_OBSERVER);
-  inside::schedule().judges = true;
+  inside::judges_synchronism() = true;
   inside::config().synchronism.bad_periods = 0;
   inside::config().synchronism.floor_q16 = raw(0.5, 16);
   inside::config().synchronism.share_q15 = 0;
@@ -226,10 +226,10 @@ TEST_F(Protection, TheObserverBesideTheFluxIsJudgedByItsResiduals) {
       make_run();
       trust_synchronism();
       use_source(POSITION_FLUX_CONV);
-      inside::blend().region = alone ? BLEND_HIGH : BLEND_BOTH;
-      inside::blend().share_q15 = alone ? 0 : 16384;
+      inside::blend_region() = alone ? BLEND_HIGH : BLEND_BOTH;
+      inside::blend_share_q15() = alone ? 0 : 16384;
       polarity_watch.open = false;
-      inside::schedule().judges = asked;
+      inside::judges_synchronism() = asked;
       inside::modulator().is_alternating = true;
       inside::observer().residual = {0, 0, 3000, 1};
       inside::judged_at() = static_cast<std::uint16_t>(inside::heartbeat() - 1u);
@@ -250,14 +250,14 @@ TEST_F(Protection, ThePapersAvvIsJudgedByItsRegression) {
     inside::config().synchronism.bad_periods = 0;
     inside::config().synchronism.floor_q16 = raw(0.5, 16);
     inside::config().synchronism.share_q15 = 0;
-    inside::schedule().judges = true;
+    inside::judges_synchronism() = true;
     synchronism_reset(&inside::synchronism());
     inside::window_count() = 1;
     inside::windows()[0] = {{0, 0}, {0, 0}, {0, 0}, 5000, 5000, true};
     inside::selected().speed_bpp = 0;
     inside::avv().regression = {};
     inside::avv().regression.mean_q20 = {raw(5.0, 20), raw(5.0, 20)};  // no machine of this model does that
-    inside::avv().regression.information = seen ? 1000 : 0;
+    inside::avv_information() = seen ? 1000 : 0;
     for (int n = 0; n < 8; ++n) {
       inside::heartbeat()++;
       inside::protect_step();
@@ -284,7 +284,7 @@ TEST_F(Protection, TheFramesOwnSpeedIsWhatItHasTurned) {
       synchronism_reset(&inside::synchronism());
       inside::heartbeat() = static_cast<std::uint16_t>(inside::heartbeat() + static_cast<unsigned>(since));
       inside::selected().angle_bam += static_cast<std::uint32_t>(since * bpp_of(300 + ahead));
-      inside::schedule().judges = true;
+      inside::judges_synchronism() = true;
       inside::protect_step();
       const synchronism_t& s = inside::synchronism();
       const double emf = real(inside::model().emf_q16, 16) * std::ldexp(bpp_of(ahead), -32) * kTurn;
@@ -310,7 +310,7 @@ TEST_F(Protection, AReversedBackEmfIsThePolarity) {
     inside::command_dq_q16() = {0, raw(reversed ? -40.0 : 40.0, 16)};
     int n = 0;
     for (; n < 400 && polarity_watch.open && inside::state() == DRIVE_RUN; ++n) {
-      inside::schedule().slot =
+      inside::scheduled_slot() =
           n % 5 == 0 ? SLOT_VOLTAGE : SCHEDULE_SLOTS;  // the back-EMF's place in the round, and none
       inside::selected().angle_bam += static_cast<std::uint32_t>(speed);
       inside::protect_step();
@@ -331,7 +331,7 @@ TEST_F(Protection, AnEncoderThatIsTrimmedIsNotJudged) {
     use_parameters();
     (void)while_running(400, [] {
       board.encoder = (board.encoder + 4u) & 4095u;
-      inside::avv().observer.angle_bam = encoder.observer.angle_bam;
+      inside::avv_angle_bam() = encoder.observer.angle_bam;
     });
     EXPECT_EQ(inside::state(), trimmed ? DRIVE_RUN : DRIVE_FAULT);
   }
@@ -344,7 +344,7 @@ TEST_F(Protection, ALossWithAReversedEmfIsThePolarity) {
     make_run();
     (void)while_running(400, [&] {
       board.encoder = (board.encoder + 4u) & 4095u;
-      inside::avv().observer.angle_bam = encoder.observer.angle_bam;
+      inside::avv_angle_bam() = encoder.observer.angle_bam;
       polarity_watch.open = open;
       polarity_watch.samples_invalid = true;  // it has no say of its own for now
       polarity_watch.sign.expected_q16 = raw(8.0, 16);

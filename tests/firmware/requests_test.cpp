@@ -124,7 +124,7 @@ TEST_F(Requests, ReadGetAndSet) {
   EXPECT_EQ(ask(REQUEST_PARAMETER_READ, little(0, 2) + little(33, 1)).status(), RANGE);
   EXPECT_EQ(set(86, 500 * 256).number(0, 4), 500u * 256u);
   EXPECT_EQ(ask(REQUEST_PARAMETER_GET, little(86, 2)).number(0, 4), 500u * 256u);
-  EXPECT_TRUE(inside::request().reload);
+  EXPECT_TRUE(inside::reload_requested());
   EXPECT_EQ(ask(REQUEST_PARAMETER_GET, little(19, 2)).status(), UNKNOWN);
   EXPECT_EQ(set(19, 0).status(), UNKNOWN);
 }
@@ -154,7 +154,7 @@ TEST_F(Requests, AConflictIsTakenAtRestAndRefusedInRun) {
   EXPECT_EQ(parameter_get(43), 10 * 65536);
   inside::state() = DRIVE_READY;
   EXPECT_EQ(give(COMMAND_START).status(), CONFLICT);
-  EXPECT_FALSE(inside::request().start);
+  EXPECT_FALSE(inside::start_requested());
   EXPECT_EQ(set(43, long_window).status(), OK);
   inside::state() = DRIVE_RUN;
   const Answer refused = set(43, 10 * 65536);
@@ -174,19 +174,19 @@ TEST_F(Requests, Commands) {
   EXPECT_EQ(fast.text(), "4000.0 rpm is beyond speed_limit, 3300 rpm: nothing changed");
   EXPECT_EQ(drive_commanded_speed(), 600 * 65536);
   EXPECT_EQ(give(COMMAND_START).status(), OK);
-  EXPECT_TRUE(inside::request().start);
+  EXPECT_TRUE(inside::start_requested());
   EXPECT_EQ(give(COMMAND_STOP).status(), OK);
-  EXPECT_TRUE(inside::request().stop);
-  EXPECT_FALSE(inside::request().start) << "a start that was not carried out yet must not outlive the stop";
+  EXPECT_TRUE(inside::stop_requested());
+  EXPECT_FALSE(inside::start_requested()) << "a start that was not carried out yet must not outlive the stop";
   EXPECT_EQ(give(COMMAND_COMMISSION).status(), OK);
   EXPECT_EQ(give(COMMAND_COAST).status(), OK);
-  EXPECT_EQ(inside::request().begin, nullptr);
+  EXPECT_EQ(inside::state_requested(), nullptr);
   EXPECT_EQ(give(COMMAND_RESET).status(), STATE);
   inside::state() = DRIVE_FAULT;
   inside::fault() = FAULT_STOP;
   EXPECT_EQ(give(COMMAND_START).text(), "a fault is latched, reset it first: standstill not reached within stop_time");
   EXPECT_EQ(give(COMMAND_RESET).status(), OK);
-  EXPECT_TRUE(inside::request().reset);
+  EXPECT_TRUE(inside::reset_requested());
   EXPECT_EQ(give(77).status(), UNKNOWN);
 }
 
@@ -218,7 +218,7 @@ TEST_F(Requests, TheStore) {
 TEST_F(Requests, StatusAndSignals) {
   inside::state() = DRIVE_RUN;
   inside::selected().speed_bpp = bpp_of(-123);
-  inside::speed_ramp().value = bpp_of(600);
+  inside::ramped_bpp() = bpp_of(600);
   inside::limits() = LIMIT_VOLTAGE | LIMIT_BRAKING;
   const Answer a = ask(REQUEST_STATUS);
   ASSERT_EQ(a.body(), 25u);

@@ -110,7 +110,7 @@ TEST_F(Drive, EveryFrameIsOneThatTheHardwareCanDo) {
     hal_adc_window_t w = still_window();
     w.start_a = static_cast<std::uint16_t>(4 * (2048 + random.below(800) - 400));
     w.end_a = static_cast<std::uint16_t>(3 * (2048 + random.below(800) - 400));
-    inside::avv().observer.angle_bam = encoder.observer.angle_bam;  // no divergence: it is not the subject
+    inside::avv_angle_bam() = encoder.observer.angle_bam;  // no divergence: it is not the subject
     period(w);
     const hal_pwm_frame_t& f = board.frame;
     for (int leg = 0; leg < 3; ++leg) {
@@ -214,7 +214,7 @@ TEST_F(Drive, TheSensorsScaleIsRenewedInItsTurn) {
   const slopes_scale_t renewed = slopes_scale(&inside::config().slopes, &inside::sensor_trim());
   ASSERT_NE(std::memcmp(&before, &renewed, sizeof before), 0);
   for (const schedule_slot_t turn : {SLOT_REGRESSION, SCHEDULE_SLOTS, SLOT_VOLTAGE}) {
-    inside::schedule().slot = turn;
+    inside::scheduled_slot() = turn;
     sample(std::vector<hal_adc_window_t>(inside::sampled_pattern().window_count, still_window()));
     const slopes_scale_t& expected = turn == SLOT_VOLTAGE ? renewed : before;
     EXPECT_EQ(std::memcmp(&inside::sensor_scale(), &expected, sizeof expected), 0) << turn;

@@ -36,7 +36,7 @@ class Schedule : public Drive {
     inside::current_dq_q20() = {0, 0};
     inside::model().iq_q20 = 0;
     inside::schedule() = {};
-    inside::schedule().period = 9;
+    inside::scheduled_period() = 9;
     inside::schedule().last = SLOT_OPERATING_POINT;
   }
   /// The observer knows its angle to `share` of 5 degrees, with nothing gathered.
@@ -96,7 +96,7 @@ TEST_F(Schedule, ADecisionOfTheStartHasAPeriodWithoutATask) {
     inside::state() = DRIVE_START;
     leave_working_point();
     next(before);
-    inside::flags().wants_exclusive = true;
+    inside::wants_exclusive() = true;
     schedule_t s = next(1)[0];
     const bool own = s.task == TASK_SPEED || s.task == TASK_FIELD;  // then it waits
     EXPECT_NE(s.exclusive, own);
@@ -104,14 +104,14 @@ TEST_F(Schedule, ADecisionOfTheStartHasAPeriodWithoutATask) {
     EXPECT_TRUE(s.exclusive && s.skips);
     EXPECT_EQ(s.slot, SCHEDULE_SLOTS);
     EXPECT_FALSE(s.moves || s.renews || s.judges);
-    inside::flags().wants_exclusive = false;
+    inside::wants_exclusive() = false;
     EXPECT_FALSE(next(1)[0].exclusive);
   }
 }
 
 TEST_F(Schedule, OnlyAStartDecides) {
   for (const drive_state_t state : {DRIVE_READY, DRIVE_RUN, DRIVE_STOP, DRIVE_COMMISSION}) {
-    inside::flags().wants_exclusive = true;
+    inside::wants_exclusive() = true;
     drive_enter(&drive, state);
     EXPECT_FALSE(next(1)[0].exclusive) << state;
   }
@@ -196,14 +196,14 @@ TEST_F(Schedule, AnObserverThatDoesNotKnowItsAngleLooksWhereThereIsRoom) {
 TEST_F(Schedule, BesideTheFieldOfACaughtShaftTheWindowsAreLeftOut) {
   inside::state() = DRIVE_START;
   for (const bool caught : {true, false}) {
-    inside::flags().caught = caught;
+    inside::is_caught() = caught;
     for (const schedule_t& s : next(20)) {
       EXPECT_FALSE(s.turning);
       EXPECT_EQ(s.skips, caught && s.task == TASK_FIELD);
     }
   }
   inside::state() = DRIVE_RUN;
-  inside::flags().caught = true;
+  inside::is_caught() = true;
   for (const schedule_t& s : next(20)) EXPECT_TRUE(s.turning && !(s.skips && s.task == TASK_FIELD));
 }
 
@@ -250,8 +250,8 @@ TEST_F(Schedule, SourcesWithoutTheObserverDoNotWaitForIt) {
     for (const bool alone : {false, true}) {
       run_with(source);
       know(1.1);
-      inside::blend().region = alone ? BLEND_HIGH : BLEND_LOW;
-      inside::blend().share_q15 = alone ? 0 : 32767;
+      inside::blend_region() = alone ? BLEND_HIGH : BLEND_LOW;
+      inside::blend_share_q15() = alone ? 0 : 32767;
       const bool has =
           source == POSITION_OBSERVER || source == POSITION_OBSERVER_AVV || (source >= POSITION_FLUX_CONV && !alone);
       for (const schedule_t& s : next(10)) {
@@ -277,8 +277,8 @@ TEST_F(Schedule, BesideTheFluxLongTasksHaveTheirPeriodWithoutWindows) {
                {POSITION_ENCODER, BLEND_BOTH, 0.5, false}};
   for (const auto& c : cases) {
     run_with(c.source);
-    inside::blend().region = c.region;
-    inside::blend().share_q15 = static_cast<std::int32_t>(32767.0 * c.share);
+    inside::blend_region() = c.region;
+    inside::blend_share_q15() = static_cast<std::int32_t>(32767.0 * c.share);
     for (const schedule_t& s : next(20)) {
       EXPECT_EQ(s.skips, c.skips && (s.task == TASK_SPEED || s.task == TASK_FIELD)) << c.source << c.region << s.period;
     }

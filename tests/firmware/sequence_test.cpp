@@ -84,8 +84,8 @@ TEST_F(States, RequestsThatAStateHasNoUseForAreForgotten) {
   drive_command_commission();
   periods(3);
   EXPECT_EQ(inside::state(), DRIVE_RUN);
-  EXPECT_FALSE(inside::request().start || inside::request().reset || inside::request().begin != nullptr ||
-               inside::request().stop);
+  EXPECT_FALSE(inside::start_requested() || inside::reset_requested() || inside::state_requested() != nullptr ||
+               inside::stop_requested());
   drive_command_stop();
   periods(30);
   EXPECT_EQ(inside::state(), DRIVE_READY);
@@ -115,12 +115,12 @@ TEST_F(States, AStopInACommissioningsSpinBrakesTheShaft) {
   commissioning.phase = COMMISSIONING_SPIN;
   commissioning.tick = 1;
   for (const bool turning : {true, false}) {
-    inside::flags().spins = turning;
+    inside::spins() = turning;
     inside::state() = DRIVE_COMMISSION;
     commissioning.outcome = COMMISSIONING_RUNNING;
     commissioning.phase = COMMISSIONING_ALIGN;
     board.gates_on = true;
-    inside::request().reload = false;  // the background level has been there
+    inside::withdraw_reload();  // the background level has been there
     drive_command_stop();
     drive_sequence(&drive);
     EXPECT_EQ(inside::state(), turning ? DRIVE_STOP : DRIVE_READY);
@@ -137,7 +137,7 @@ TEST_F(States, AStopLetsAnEvaluationEnd) {
   commissioning.outcome = COMMISSIONING_RUNNING;
   commissioning.phase = COMMISSIONING_EVALUATE;
   commissioning.evaluate = true;
-  inside::flags().over = true;
+  inside::is_over() = true;
   drive_command_stop();
   drive_sequence(&drive);
   EXPECT_EQ(inside::state(), DRIVE_COMMISSION);
@@ -214,7 +214,7 @@ TEST_F(States, ACoastEndsACommissioning) {
   EXPECT_FALSE(board.gates_on);
   EXPECT_EQ(c.outcome, COMMISSIONING_ABORTED);
   EXPECT_EQ(c.phase, COMMISSIONING_IDLE);
-  EXPECT_TRUE(inside::request().reload);
+  EXPECT_TRUE(inside::reload_requested());
 }
 
 TEST_F(States, ACoastIsCarriedOutOnce) {
@@ -268,16 +268,16 @@ TEST_F(States, WhereThePowerStageIsOnAndWhereTheShaftIsTurned) {
                {DRIVE_FAULT, false, false}};
   for (const bool spin : {false, true}) {
     for (const auto& c : cases) {
-      inside::flags().spins = spin;
+      inside::spins() = spin;
       drive_enter(&drive, c.state);
       EXPECT_EQ(drive_is_energised(), c.energised) << c.state;
       EXPECT_EQ(drive_is_turning(&drive), c.turning) << c.state;
     }
     drive_enter(&drive, DRIVE_COMMISSION);
-    inside::flags().spins = spin;
+    inside::spins() = spin;
     EXPECT_TRUE(drive_is_energised());
     EXPECT_EQ(drive_is_turning(&drive), spin);
-    inside::flags().over = true;
+    inside::is_over() = true;
     EXPECT_FALSE(drive_is_energised());
   }
 }
@@ -301,9 +301,9 @@ TEST_F(States, EachStopHasItsWholeTime) {
   drive_sequence(&drive);
   ASSERT_EQ(inside::state(), DRIVE_STOP);
   inside::selected().speed_bpp = bpp_of(5);
-  inside::speed_ramp().value = 1;
+  inside::ramped_bpp() = 1;
   for (int n = 0; n < 100; ++n) drive_sequence(&drive);  // the ramp has its own time
-  inside::speed_ramp().value = 0;
+  inside::ramped_bpp() = 0;
   for (int n = 0; n < 500; ++n) drive_sequence(&drive);
   EXPECT_EQ(inside::state(), DRIVE_STOP);
   drive_sequence(&drive);

@@ -20,7 +20,7 @@ TEST_F(Drive, ASpeedCommandBeforeTheStartIsKept) {
   make_run();
   inside::config().synchronism.bad_periods = 1000000;  // these windows are no machine's
   periods(20);
-  EXPECT_GT(inside::speed_ramp().value, 0);
+  EXPECT_GT(inside::ramped_bpp(), 0);
   EXPECT_NEAR(rad_per_s(inside::target_bpp()) / kTurn * 60.0 / 4.0, 300.0, 0.01);
 }
 
@@ -59,9 +59,9 @@ TEST_F(Drive, AFaultInTheMidstOfASpeedCommandLeavesCommandAndTargetAsOne) {
       if (place == at) drive_trip(&drive, FAULT_EMERGENCY);
     };
     fault_at(0);
-    inside::request().speed_rpm_q16 = raw(900.0, 16);
+    inside::write_speed_request(raw(900.0, 16));
     fault_at(1);
-    inside::request().speed = true;
+    inside::mark_speed_request();
     fault_at(2);
     period();
     ASSERT_EQ(inside::state(), DRIVE_FAULT);

@@ -26,12 +26,12 @@ class SpeedTask : public Drive {
     inside::link_q16() = raw(kLink, 16);
     inside::current_limit_q20() = raw(10.0, 20);
     inside::reference_dq_q20() = {0, 0};
-    inside::speed_ramp().value = inside::target_bpp() = 0;
+    inside::ramped_bpp() = inside::target_bpp() = 0;
     parameters.position_hold = 0;
     speed(0.0);
   }
   static void part(task_t task) {
-    inside::schedule().task = task;
+    inside::scheduled_task() = task;
     inside::speed_step();
   }
   static void millisecond() {

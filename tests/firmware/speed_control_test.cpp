@@ -60,7 +60,7 @@ TEST_F(SpeedTask, ABrakingShaftKeepsToItsLimit) {
       inside::link_q16() = raw(415.0, 16);
       inside::current_limit_q20() = raw(8.0, 20);
       speed(sign * 300.0);
-      inside::speed_ramp().value = inside::target_bpp() = bpp(sign * (300.0 + change * 250.0));
+      inside::ramped_bpp() = inside::target_bpp() = bpp(sign * (300.0 + change * 250.0));
       for (int n = 0; n < 5; ++n) part(TASK_SPEED);
       const bool brakes = change < 0.0;
       const double braking = real(inside::braking_headroom_q20(), 20);
@@ -77,7 +77,7 @@ TEST_F(SpeedTask, WithinItsLimitsNoLimitIsSaid) {
   inside::weakening_q20() = raw(-1.0, 20);
   inside::limits() = LIMIT_BRAKING | LIMIT_CURRENT | LIMIT_WEAKENING;
   speed(100.0);
-  inside::speed_ramp().value = inside::target_bpp() = bpp(100.0);
+  inside::ramped_bpp() = inside::target_bpp() = bpp(100.0);
   part(TASK_SPEED);
   EXPECT_EQ(inside::limits(), LIMIT_WEAKENING) << "that one weakening renews itself";
 }
@@ -87,7 +87,7 @@ TEST_F(SpeedTask, TheLoadIsBalancedAtOnce) {
   const auto current = [&](double w, double load_nm) {
     SetUp();
     speed(w);
-    inside::speed_ramp().value = inside::target_bpp() = bpp(w);
+    inside::ramped_bpp() = inside::target_bpp() = bpp(w);
     inside::config().friction_per_bpp_q40 =
         raw(0.002 / 4.0 * kTurn / kPeriod / 4294967296.0, 40);  // 2 mNms, mechanical
     inside::selected().load_accel_q8 = static_cast<std::int32_t>(load_nm * real(inside::model().accel_q12, 12) * 256.0);
@@ -142,7 +142,7 @@ TEST_F(SpeedTask, AHeldShaftIsHeldStiffly) {
     hold_begin(&drive);
     brake_release_hold.reference_bam = bam(0.3 + c.off);
     const double w = 50.0;
-    inside::speed_ramp().value = bpp(w);
+    inside::ramped_bpp() = bpp(w);
     const double per_nm = real(inside::model().accel_q12, 12) * kTurn / 4294967296.0 / kPeriod / kPeriod;
     inside::selected() = {bam(0.3 + w * kPeriod), bpp(w - c.slow),
                           static_cast<std::int32_t>(c.load_nm * real(inside::model().accel_q12, 12) * 256.0), 32767};
@@ -174,7 +174,7 @@ TEST_F(SpeedTask, EachPeriodHasItsOwnTask) {
     c.references.current_q20.d = kMark;
     c.headroom_q20 = raw(3.0, 20);
     c.braking_headroom_q20 = kMark;
-    inside::schedule().period = static_cast<std::uint16_t>((k + 9) % 10);
+    inside::scheduled_period() = static_cast<std::uint16_t>((k + 9) % 10);
     schedule_next(&drive, &inside::schedule());
     inside::speed_step();
     EXPECT_EQ(c.headroom_q20 != raw(3.0, 20), k == 0) << k;
@@ -187,10 +187,10 @@ TEST_F(SpeedTask, EachPeriodHasItsOwnTask) {
 
 TEST_F(SpeedTask, NothingIsControlledWhileNothingTurns) {
   inside::state() = DRIVE_READY;
-  inside::speed_ramp().value = 0;
+  inside::ramped_bpp() = 0;
   inside::target_bpp() = 1000000;
   millisecond();
-  EXPECT_EQ(inside::speed_ramp().value, 0);
+  EXPECT_EQ(inside::ramped_bpp(), 0);
 }
 
 // The drive's clock, in any state.
@@ -212,14 +212,14 @@ TEST_F(SpeedTask, TheRampLeadsToItsTarget) {
   inside::target_bpp() = 5000000;
   part(TASK_SPEED);
   part(TASK_SPEED);
-  EXPECT_EQ(inside::speed_ramp().value, 2000);
+  EXPECT_EQ(inside::ramped_bpp(), 2000);
   inside::state() = DRIVE_STOP;
   part(TASK_SPEED);
-  EXPECT_EQ(inside::speed_ramp().value, 1000);
+  EXPECT_EQ(inside::ramped_bpp(), 1000);
   inside::state() = DRIVE_RUN;
   inside::config().ramp_step_bpp = 0;
   part(TASK_SPEED);
-  EXPECT_EQ(inside::speed_ramp().value, 5000000);
+  EXPECT_EQ(inside::ramped_bpp(), 5000000);
 }
 
 // The law is told where the ramp is and by how much it moves on; where there is none, where it has jumped to.
@@ -227,7 +227,7 @@ TEST_F(SpeedTask, TheLawFollowsTheRampAndJumpsWithoutOne) {
   for (const std::int32_t step : {20000, 0}) {
     SetUp();
     inside::config().ramp_step_bpp = step;
-    inside::speed_ramp().value = 300000;
+    inside::ramped_bpp() = 300000;
     inside::target_bpp() = 500000;
     speed_controller_t law = inside::speed_controller();
     const speed_controller_input_t in = {step > 0 ? 300000 : 500000, step, 0, 0, raw(-10.0, 20), raw(10.0, 20)};
@@ -244,7 +244,7 @@ TEST_F(SpeedTask, AtZeroThePlaceIsKept) {
     inside::state() = state;
     inside::target_bpp() = target;
     inside::config().ramp_step_bpp = 1;
-    inside::speed_ramp().value = ramp;
+    inside::ramped_bpp() = ramp;
     inside::selected().speed_bpp = now;
     position_hold_release(&inside::position_hold());
     if (before) (void)position_hold_step(&inside::position_hold(), 0, inside::config().hold_gain_q30);

@@ -162,7 +162,7 @@ TEST_F(SpeedInput, LossCoastsWhereThatIsWanted) {
   turns(1, false, 410);
   turns(6, true, 410);
   ASSERT_EQ(inside::state(), DRIVE_RUN);
-  inside::speed_ramp().value = raw(0.01, 32);  // a shaft that turns would be brought to rest first
+  inside::ramped_bpp() = raw(0.01, 32);  // a shaft that turns would be brought to rest first
   const int off = board.gates_off_calls;
   turns(3, true, 100);
   EXPECT_GT(board.gates_off_calls, off);

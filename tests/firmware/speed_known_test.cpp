@@ -23,7 +23,7 @@ class SpeedKnown : public Drive {
     flux_observer.load_angle_bam = 0x01000000;
     inside::current_dq_q20() = {raw(-1.5, 20), raw(2.5, 20)};
     inside::limits() = LIMIT_WEAKENING;
-    inside::speed_ramp().value = 123456;  // of when the power stage was on
+    inside::ramped_bpp() = 123456;  // of when the power stage was on
     inside::reference_dq_q20() = {raw(-1.0, 20), raw(3.0, 20)};
     inside::modulated_q16() = {raw(20.0, 16), raw(-30.0, 16)};
   }
@@ -63,10 +63,10 @@ TEST_F(SpeedKnown, InACommissioningUntilItsGatesAreOff) {
   NEEDS("commissioning");
   inside::state() = DRIVE_COMMISSION;
   expect(true, "it measures");
-  inside::flags().unseen = KNOWN_ROTOR;
+  inside::unseen() = KNOWN_ROTOR;
   expect(false, true, "the shaft follows the current");
-  inside::flags().unseen = 0;
-  inside::flags().over = true;
+  inside::unseen() = 0;
+  inside::is_over() = true;
   expect(false, "the background level has the rest");
 }
 
@@ -74,10 +74,10 @@ TEST_F(SpeedKnown, InACommissioningUntilItsGatesAreOff) {
 TEST_F(SpeedKnown, InAStartOnlyOnceAShaftThatTurnsIsCaught) {
   inside::state() = DRIVE_START;
   for (const bool caught : {false, true}) {
-    inside::flags().unseen = caught ? 0 : KNOWN_ROTOR;
-    inside::flags().invalid = 0;
+    inside::unseen() = caught ? 0 : KNOWN_ROTOR;
+    inside::invalid_periods() = 0;
     expect(caught, true, std::to_string(caught).c_str());
-    inside::flags().invalid = 1;
+    inside::invalid_periods() = 1;
     expect(false, "the windows are of before");
   }
 }

@@ -23,13 +23,13 @@ TEST_F(SpeedReference, TheRampWaitsForAShaftThatMayNotBeBraked) {
         SetUp();
         speed(sign * 300.0);
         inside::config().ramp_step_bpp = 1000;
-        const std::int32_t before = inside::speed_ramp().value = bpp(sign * 290.0);
+        const std::int32_t before = inside::ramped_bpp() = bpp(sign * 290.0);
         inside::target_bpp() = bpp(sign * target);
         inside::limits() = limits;
         part(TASK_SPEED);
         const bool slower = target < 300.0;
         const int steps = slower ? ((limits & LIMIT_BRAKING) != 0 ? 0 : -1) : 1;
-        EXPECT_EQ(inside::speed_ramp().value - before, sign * steps * 1000) << limits << " " << target;
+        EXPECT_EQ(inside::ramped_bpp() - before, sign * steps * 1000) << limits << " " << target;
       }
     }
   }
@@ -62,7 +62,7 @@ TEST_F(SpeedReference, CoggingIsLearntWhereTheAngleIsJudged) {
       inside::config().observer.cogging.order = 6;
       inside::observer().cogging.order = 0;
       inside::observer().p_aa = 0;
-      inside::schedule().judges = judges;
+      inside::judges_synchronism() = judges;
       part(task);
       EXPECT_EQ(inside::observer().cogging.order, task == TASK_JUDGE_FIRST && judges ? 6 : 0) << task;
     }

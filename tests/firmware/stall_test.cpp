@@ -25,7 +25,7 @@ class Stall : public Drive {
     inside::limits() = LIMIT_CURRENT;
     parameters.stall_time = 500;
   }
-  static void refer(int rpm) { inside::speed_ramp().value = rpm < 0 ? -bpp_of(-rpm) : bpp_of(rpm); }
+  static void refer(int rpm) { inside::ramped_bpp() = rpm < 0 ? -bpp_of(-rpm) : bpp_of(rpm); }
   static void look() {
     inside::time_ms()++;
     board_service();
@@ -106,7 +106,7 @@ TEST_F(Stall, AWayMadeIsFromEightDegreesToAQuarterTurn) {
     for (const double share : {0.98, 1.02}) {
       for (const int sign : {1, -1}) {
         SetUp();
-        inside::speed_ramp().value = sign * reference;
+        inside::ramped_bpp() = sign * reference;
         for (int n = 0; n < 100; ++n) look();
         ASSERT_EQ(::board.stalled_ms, 100);
         inside::selected().angle_bam = static_cast<std::uint32_t>(std::llround(sign * share * degrees * kDegree));

@@ -20,18 +20,18 @@ TEST_F(StartCaught, WhatIsNotFollowedIsCaughtAgain) {
   for (const double stray : {14.9, -14.9, 15.1, -15.1}) {
     SetUp();
     catch_at(300.0, 1.0);
-    ASSERT_EQ(inside::start_found().phase, START_CATCH);
+    ASSERT_EQ(inside::start_phase(), START_CATCH);
     flying_start.learnt = true;
-    flying_start.stray = inside::avv().error_bam = static_cast<std::int32_t>(stray / 360.0 * 4294967296.0);
+    flying_start.stray = inside::avv_error_bam() = static_cast<std::int32_t>(stray / 360.0 * 4294967296.0);
     starting.tick = 138;
     start_state.step(&drive);
-    EXPECT_EQ(inside::start_found().phase, START_CATCH) << "not before its time";
-    EXPECT_FALSE(inside::flags().wants_exclusive);
+    EXPECT_EQ(inside::start_phase(), START_CATCH) << "not before its time";
+    EXPECT_FALSE(inside::wants_exclusive());
     starting.tick = 139;
     start_state.step(&drive);
-    EXPECT_EQ(inside::start_found().phase, START_CATCH) << "not beside anything else";
-    EXPECT_TRUE(inside::flags().wants_exclusive);
-    inside::schedule().exclusive = true;
+    EXPECT_EQ(inside::start_phase(), START_CATCH) << "not beside anything else";
+    EXPECT_TRUE(inside::wants_exclusive());
+    inside::is_exclusive() = true;
     start_state.step(&drive);
     const bool follows = std::fabs(stray) < 15.0;
     EXPECT_EQ(inside::state(), follows ? DRIVE_RUN : DRIVE_START) << stray;
@@ -47,15 +47,15 @@ TEST_F(StartCaught, ALoopThatIsClosedBeginsAnew) {
   inside::field_weakening().trim_q20 = raw(-3.0, 20);
   catch_at(300.0, 1.0);
   const flying_start_t& s = flying_start;
-  ASSERT_EQ(inside::start_found().phase, START_CATCH);
-  EXPECT_TRUE(inside::flags().caught);
-  EXPECT_FALSE(inside::flags().shorted || s.learnt);
+  ASSERT_EQ(inside::start_phase(), START_CATCH);
+  EXPECT_TRUE(inside::is_caught());
+  EXPECT_FALSE(inside::is_shorted() || s.learnt);
   EXPECT_EQ(s.stray, 0);
   EXPECT_EQ(starting.axis.count, 0);
   EXPECT_EQ(inside::start_found().sigma_q8, s.rotor.sigma_q8);
   EXPECT_GT(inside::start_found().sigma_q8, 0);
-  EXPECT_EQ(inside::avv().observer.angle_bam, s.rotor.angle_bam);
-  EXPECT_EQ(inside::avv().observer.speed_bpp, s.rotor.speed_bpp);
+  EXPECT_EQ(inside::avv_angle_bam(), s.rotor.angle_bam);
+  EXPECT_EQ(inside::avv_speed_bpp(), s.rotor.speed_bpp);
   EXPECT_EQ(inside::weakening_q20(), 0) << "at 300 rad/s nothing is weakened";
   EXPECT_FALSE(board.gates_on);
   start_state.step(&drive);
@@ -65,20 +65,20 @@ TEST_F(StartCaught, ALoopThatIsClosedBeginsAnew) {
 // Where no axis is asked for, the pulses' word is the last.
 TEST_F(StartCaught, WithoutAnAxisToSeeItRunsAsSoonAsTheWindowsAreItsOwn) {
   catch_at(300.0, 1.0);
-  ASSERT_EQ(inside::start_found().phase, START_CATCH);
+  ASSERT_EQ(inside::start_phase(), START_CATCH);
   start_ways.open_loop = true;
   start_state.step(&drive);
   EXPECT_TRUE(board.gates_on);
-  inside::schedule().exclusive = true;
+  inside::is_exclusive() = true;
   start_state.step(&drive);
   EXPECT_EQ(inside::state(), DRIVE_START) << "its windows are of before";
-  inside::flags().invalid = 0;
-  inside::schedule().exclusive = false;
+  inside::invalid_periods() = 0;
+  inside::is_exclusive() = false;
   start_state.step(&drive);
   EXPECT_EQ(inside::state(), DRIVE_START) << "not beside anything else";
-  EXPECT_TRUE(inside::flags().wants_exclusive);
+  EXPECT_TRUE(inside::wants_exclusive());
   EXPECT_NE(drive_known(&drive) & KNOWN_ROTOR, 0) << "it is caught";
-  inside::schedule().exclusive = true;
+  inside::is_exclusive() = true;
   start_state.step(&drive);
   EXPECT_EQ(inside::state(), DRIVE_RUN);
   start_ways.open_loop = false;
@@ -87,7 +87,7 @@ TEST_F(StartCaught, WithoutAnAxisToSeeItRunsAsSoonAsTheWindowsAreItsOwn) {
 // A fast shaft needs its field current from the first period on.
 TEST_F(StartCaught, AFastShaftIsWeakenedAtOnce) {
   catch_at(1500.0, 1.0);
-  ASSERT_EQ(inside::start_found().phase, START_CATCH);
+  ASSERT_EQ(inside::start_phase(), START_CATCH);
   EXPECT_LT(real(inside::weakening_q20(), 20), -0.1);
   EXPECT_LT(real(inside::reference_dq_q20().d, 20), -0.1);
 }
@@ -98,7 +98,7 @@ TEST_F(StartCaught, TheFrameTurnsWithTheRotorUntilItsAxisIsSeen) {
   for (const double off : {0.1, -0.1, 0.5, -0.5}) {
     SetUp();
     catch_at(300.0, 1.25);
-    ASSERT_EQ(inside::start_found().phase, START_CATCH);
+    ASSERT_EQ(inside::start_phase(), START_CATCH);
     flying_start_t& s = flying_start;
     const flying_rotor_t caught = s.rotor;
     regression_t& r = inside::avv().regression;
@@ -107,8 +107,8 @@ TEST_F(StartCaught, TheFrameTurnsWithTheRotorUntilItsAxisIsSeen) {
       start_state.step(&drive);
       EXPECT_FALSE(s.learnt);
       EXPECT_NEAR(wrapped(rad(s.rotor.angle_bam - caught.angle_bam)), n * 300.0 * kPeriod, 1e-3);
-      EXPECT_EQ(inside::avv().observer.angle_bam, s.rotor.angle_bam);
-      EXPECT_EQ(inside::avv().observer.speed_bpp, caught.speed_bpp);
+      EXPECT_EQ(inside::avv_angle_bam(), s.rotor.angle_bam);
+      EXPECT_EQ(inside::avv_speed_bpp(), caught.speed_bpp);
     }
     EXPECT_EQ(starting.axis.count, 0) << "it has not been seen";
     EXPECT_NEAR(1.0 * inside::model().trim.psi_q16 / inside::model().emf_q16, 0.25, 0.01);
@@ -122,25 +122,25 @@ TEST_F(StartCaught, TheFrameTurnsWithTheRotorUntilItsAxisIsSeen) {
       r.cross_q16 = raw(1.25 * std::sin(2.0 * off) * half * spread, 16);
       start_state.step(&drive);
     };
-    inside::flags().invalid = 1;
+    inside::invalid_periods() = 1;
     see();
     EXPECT_EQ(starting.axis.count, 0) << "windows of gates that were off";
-    inside::flags().invalid = 0;
+    inside::invalid_periods() = 0;
     for (int n = 0; n < AXIS_PERIODS; ++n) see();
     EXPECT_FALSE(s.learnt) << "a decision has a period of its own";
     const std::uint32_t before = s.rotor.angle_bam;
-    inside::schedule().exclusive = true;
+    inside::is_exclusive() = true;
     see();
     EXPECT_TRUE(s.learnt);
     const double most = 15.0 * kDegree;
     EXPECT_NEAR(wrapped(rad(s.rotor.angle_bam - before)), 300.0 * kPeriod + std::clamp(off, -most, most), 2e-3) << off;
-    EXPECT_EQ(inside::avv().observer.angle_bam, s.rotor.angle_bam);
+    EXPECT_EQ(inside::avv_angle_bam(), s.rotor.angle_bam);
     EXPECT_TRUE(s.flux_due);
     inside::model().trim.psi_q16 = 1;
-    inside::schedule().exclusive = false;
+    inside::is_exclusive() = false;
     see();
     EXPECT_TRUE(s.flux_due) << "and a period of its own";
-    inside::schedule().exclusive = true;
+    inside::is_exclusive() = true;
     see();
     EXPECT_FALSE(s.flux_due);
     EXPECT_EQ(inside::model().trim.psi_q16, 0) << "the flux is as told";

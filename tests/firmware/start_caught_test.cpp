@@ -21,7 +21,7 @@ TEST_F(StartCaught, APairThatFitsGivesTheSpeed) {
   for (const double speed : {300.0, -300.0}) {
     SetUp();
     catch_at(speed, 1.0);
-    EXPECT_EQ(inside::start_found().phase, START_CATCH);
+    EXPECT_EQ(inside::start_phase(), START_CATCH);
     EXPECT_TRUE(inside::loop_is_closed());
     EXPECT_NEAR(rad_per_s(flying_start.rotor.speed_bpp), speed, 1.0);
   }
@@ -46,7 +46,7 @@ TEST_F(StartCaught, TheRotorIsCarriedOnToTheRunningPeriod) {
     p.drive_q16 = raw_ab(Vector{96.0, 0.0}.turned(0.5 + turned), 16);
     const double lag = rad(flying_evaluate(&p, &inside::model()).lag_bam);
     judge();
-    ASSERT_EQ(inside::start_found().phase, START_CATCH);
+    ASSERT_EQ(inside::start_phase(), START_CATCH);
     // e = w lambda q, and the turning saliency has turned it against the rotation by the lag
     const double behind = std::copysign(kPi / 2.0 - lag, speed);
     const double there = 0.5 + turned - behind + speed * kAgo * 1e-8;
@@ -64,7 +64,7 @@ TEST_F(StartCaught, AFluxThatIsOffIsTakenFromALargeEmf) {
   for (const auto& c : cases) {
     SetUp();
     catch_at(c.speed, c.flux);
-    ASSERT_EQ(inside::start_found().phase, START_CATCH) << c.flux;
+    ASSERT_EQ(inside::start_phase(), START_CATCH) << c.flux;
     EXPECT_NEAR(1.0 * inside::model().trim.psi_q16 / inside::model().emf_q16, c.taken, 0.01)
         << c.speed << ", " << c.flux;
   }
@@ -92,7 +92,7 @@ TEST_F(StartCaught, AShortCircuitWithoutSamplesIsNotJudged) {
   inside::window_count() = 0;
   starting.tick = 100;
   start_state.step(&drive);
-  EXPECT_EQ(inside::start_found().phase, START_PULSE);
+  EXPECT_EQ(inside::start_phase(), START_PULSE);
   EXPECT_EQ(flying_start.pulses, 0);
 }
 
@@ -101,10 +101,10 @@ TEST_F(StartCaught, AShortCircuitWithoutSamplesIsNotJudged) {
 TEST_F(StartCaught, WindowsBeforeTheGatesDoNotCount) {
   for (const int blind : {2, 1, 0}) {
     for (const int on : {1000, 1290, 1300, 1310, 1500, 4000, 9000}) {
-      inside::start_found().phase = START_PULSE;
-      inside::flags().gates_off = false;
+      inside::start_phase() = START_PULSE;
+      inside::gates_off() = false;
       starting.tick = 0;
-      inside::flags().invalid = static_cast<std::uint16_t>(blind);
+      inside::invalid_periods() = static_cast<std::uint16_t>(blind);
       starting.on_tick = on;
       flying_begin(&flying_start.pulse);
       inside::window_count() = 2;
@@ -128,7 +128,7 @@ TEST_F(StartCaught, TheNextPulseWaitsForSixtyDegrees) {
     SetUp();
     await_pulse();
     see_pulse(0.5, speed * Motor{}.flux);
-    ASSERT_EQ(inside::start_found().phase, START_LISTEN);
+    ASSERT_EQ(inside::start_phase(), START_LISTEN);
     const double wait = kPi / 3.0 / speed / kPeriod;
     EXPECT_NEAR(flying_start.pause, std::max(6.0, wait), wait < 6.0 ? 0.0 : 0.01 * wait + 1.0) << speed;
     EXPECT_FALSE(inside::loop_is_closed());
@@ -143,8 +143,8 @@ TEST_F(StartCaught, AnEmfBelowThreeVoltsIsAShaftThatStands) {
     SetUp();
     await_pulse();
     see_pulse(0.5, volts);
-    EXPECT_EQ(inside::start_found().phase, volts < 3.0 ? START_AXIS : START_LISTEN);
-    EXPECT_EQ(inside::flags().shorted, volts > 3.0);
+    EXPECT_EQ(inside::start_phase(), volts < 3.0 ? START_AXIS : START_LISTEN);
+    EXPECT_EQ(inside::is_shorted(), volts > 3.0);
     EXPECT_EQ(board.gates_on, volts < 3.0);
   }
 }
@@ -168,15 +168,15 @@ TEST_F(StartCaught, APulseEndsWithItsCurrentOrItsTime) {
 
 // As long as it was told, with the gates off and the short circuit as what the modulator gives.
 TEST_F(StartCaught, AStartListensForItsPause) {
-  inside::start_found().phase = START_PULSE;  // which has told how long
+  inside::start_phase() = START_PULSE;  // which has told how long
   flying_start.pause = 10;
   listen_phase.begin(&drive);
-  EXPECT_TRUE(inside::flags().shorted);
+  EXPECT_TRUE(inside::is_shorted());
   for (int n = 1; n < 10; ++n) start_state.step(&drive);
-  EXPECT_EQ(inside::start_found().phase, START_LISTEN);
+  EXPECT_EQ(inside::start_phase(), START_LISTEN);
   EXPECT_FALSE(board.gates_on);
   start_state.step(&drive);
-  EXPECT_EQ(inside::start_found().phase, START_PULSE);
+  EXPECT_EQ(inside::start_phase(), START_PULSE);
   EXPECT_TRUE(board.gates_on);
 }
 

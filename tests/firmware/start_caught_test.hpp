@@ -47,21 +47,21 @@ class StartCaught : public Drive {
     start_state.step(&drive);
     EXPECT_FALSE(board.gates_on) << "the current dies away";
     start_state.step(&drive);
-    EXPECT_TRUE(inside::flags().wants_exclusive) << "in a period for itself";
-    EXPECT_EQ(inside::start_found().phase, START_PULSE);
-    inside::schedule().exclusive = true;
+    EXPECT_TRUE(inside::wants_exclusive()) << "in a period for itself";
+    EXPECT_EQ(inside::start_phase(), START_PULSE);
+    inside::is_exclusive() = true;
     start_state.step(&drive);
-    inside::schedule().exclusive = false;
-    if (inside::start_found().phase != START_CATCH) return;
-    inside::schedule().task = TASK_FIELD;
+    inside::is_exclusive() = false;
+    if (inside::start_phase() != START_CATCH) return;
+    inside::scheduled_task() = TASK_FIELD;
     start_state.step(&drive);
     EXPECT_FALSE(inside::loop_is_closed()) << "not beside the field's control";
-    inside::schedule().task = TASK_SLOT;
+    inside::scheduled_task() = TASK_SLOT;
     start_state.step(&drive);
   }
   void await_pulse() {
-    for (int n = 0; n < 700 && inside::start_found().phase != START_PULSE; ++n) period();
-    ASSERT_EQ(inside::start_found().phase, START_PULSE);
+    for (int n = 0; n < 700 && inside::start_phase() != START_PULSE; ++n) period();
+    ASSERT_EQ(inside::start_phase(), START_PULSE);
   }
   /// Two short circuits of a shaft at this speed (rad/s, electrical) whose magnet is `flux` times what was told.
   void catch_at(double speed, double flux) {
@@ -69,7 +69,7 @@ class StartCaught : public Drive {
     await_pulse();
     const std::uint32_t first = clock();
     see_pulse(0.5, volts);
-    ASSERT_EQ(inside::start_found().phase, START_LISTEN);
+    ASSERT_EQ(inside::start_phase(), START_LISTEN);
     await_pulse();
     see_pulse(0.5 + speed * (clock() - first) * 1e-8, volts);
   }

@@ -19,7 +19,7 @@ TEST_F(StartStanding, SaturationTellsWhereItIsVisible) {
     inside::config().saturation = {0, visible ? raw(0.002, 30) : 0};
     at(START_SETTLE, 100);
     step();
-    EXPECT_EQ(inside::start_found().phase, visible ? START_SATURATION : START_MOTION);
+    EXPECT_EQ(inside::start_phase(), visible ? START_SATURATION : START_MOTION);
     EXPECT_EQ(start().tick, 0);
     EXPECT_EQ(start().tries, 0);
     EXPECT_EQ(visible ? start().saturation.current_q20 : start().motion.current_q20,
@@ -94,7 +94,7 @@ TEST_F(StartStanding, WhatSaturationLeavesOpenIsTriedThreeTimes) {
   step();
   const std::int32_t current = parameters.start_current;
   saturation_says(POLARITY_AMBIGUOUS);
-  EXPECT_EQ(inside::start_found().phase, START_SATURATION);
+  EXPECT_EQ(inside::start_phase(), START_SATURATION);
   EXPECT_EQ(start().saturation.passes, 2);
   EXPECT_EQ(start().saturation.current_q20, current);
   EXPECT_EQ(start().tick, 0);
@@ -102,7 +102,7 @@ TEST_F(StartStanding, WhatSaturationLeavesOpenIsTriedThreeTimes) {
   EXPECT_EQ(start().saturation.passes, 1);
   EXPECT_EQ(start().saturation.current_q20, std::min(current + current / 2, parameters.current_limit));
   saturation_says(POLARITY_AMBIGUOUS);
-  EXPECT_EQ(inside::start_found().phase, START_MOTION);
+  EXPECT_EQ(inside::start_phase(), START_MOTION);
   EXPECT_EQ(start().tries, 0);
 }
 
@@ -114,7 +114,7 @@ TEST_F(StartStanding, TheThirdTryHasHalfAsMuchAgain) {
   saturation_says(POLARITY_AMBIGUOUS);
   EXPECT_EQ(start().saturation.current_q20, raw(4.0, 20));
   saturation_says(POLARITY_AMBIGUOUS);
-  EXPECT_EQ(inside::start_found().phase, START_SATURATION);
+  EXPECT_EQ(inside::start_phase(), START_SATURATION);
   EXPECT_EQ(start().saturation.current_q20, raw(6.0, 20));
 }
 
@@ -127,8 +127,8 @@ TEST_F(StartStanding, ATestWhoseCurrentStaysAwayIsHeldBack) {
       at(START_SETTLE, 100);
       step();
       const std::uint16_t test = visible ? START_SATURATION : START_MOTION;
-      ASSERT_EQ(inside::start_found().phase, test);
-      for (int n = 0; n < 2000 && start().tries == 0 && inside::start_found().phase == test; ++n) {
+      ASSERT_EQ(inside::start_phase(), test);
+      for (int n = 0; n < 2000 && start().tries == 0 && inside::start_phase() == test; ++n) {
         const dq_t asked = inside::reference_dq_q20();
         inside::current_dq_q20() = follows ? asked : dq_t{visible ? 0 : asked.d, visible ? asked.q : 0};
         step();
@@ -148,16 +148,16 @@ TEST_F(StartStanding, ATestWithoutItsCurrentDoesNotCount) {
   start().saturation.current_q20 = raw(10.0, 20);
   start().followed.worst_q20 = raw(3.8, 20);
   saturation_says(POLARITY_RIGHT);
-  EXPECT_EQ(inside::start_found().phase, START_AXIS);
+  EXPECT_EQ(inside::start_phase(), START_AXIS);
   EXPECT_EQ(start().held_back, 1);
   at(START_SETTLE, 100);
   step();
-  ASSERT_EQ(inside::start_found().phase, START_MOTION);
+  ASSERT_EQ(inside::start_phase(), START_MOTION);
   EXPECT_EQ(start().motion.current_q20, raw(4.0, 20));
   EXPECT_EQ(start().followed.worst_q20, 0);
   start().followed.worst_q20 = raw(1.6, 20);
   motion_says(1.0);
-  EXPECT_EQ(inside::start_found().phase, START_AXIS);
+  EXPECT_EQ(inside::start_phase(), START_AXIS);
   at(START_SETTLE, 100);
   step();
   EXPECT_EQ(start().motion.current_q20, raw(2.0, 20));
@@ -196,13 +196,13 @@ TEST_F(StartStanding, WhatStaysOpenAfterThatNamesTheVoltage) {
 TEST_F(StartStanding, AShaftThatTheTestHasSetInMotionIsListenedToAnew) {
   inside::config().saturation = {0, raw(0.002, 30)};
   start().tries = 2;
-  inside::avv().observer.speed_bpp = bpp(60.0);
+  inside::avv_speed_bpp() = bpp(60.0);
   at(START_SATURATION, SATURATION_LENGTH + 100, 60.0);
   start().saturation.tick = SATURATION_LENGTH;
   start().saturation.result = POLARITY_AMBIGUOUS;
   step();
   EXPECT_EQ(start().held_back, 1);
-  EXPECT_EQ(inside::start_found().phase, START_AXIS);
+  EXPECT_EQ(inside::start_phase(), START_AXIS);
 }
 
 // A shaft that creeps has all its current: motion is tried as ever, and what stays open is the polarity's fault.
@@ -240,7 +240,7 @@ TEST_F(StartStanding, WhatMotionLeavesOpenIsAFaultAfterThreeTries) {
   step();
   for (const double amps : {4.0, 8.0, 14.0}) {
     EXPECT_EQ(inside::state(), DRIVE_START);
-    EXPECT_EQ(inside::start_found().phase, START_MOTION);
+    EXPECT_EQ(inside::start_phase(), START_MOTION);
     EXPECT_EQ(start().motion.current_q20, raw(amps, 20));
     motion_says(0.1);
   }
@@ -286,7 +286,7 @@ TEST_F(StartStanding, MotionIsSeenByTheRawAngle) {
   at(START_SETTLE, 100);
   step();
   at(START_MOTION, 2);
-  inside::avv().error_bam = 1000000;
+  inside::avv_error_bam() = 1000000;
   step();
   EXPECT_EQ(start().motion.last_bam, bam(kThere) + 1000000u);
 }

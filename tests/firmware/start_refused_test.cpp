@@ -67,7 +67,7 @@ TEST_F(StartRefused, WhereTheComparatorHoldsTheGatesWithoutALookForATurningShaft
   use_parameters();
   board.pin_low = true;
   expect_refused(FAULT_OVER_CURRENT);
-  EXPECT_NE(inside::start_found().phase, START_AXIS);
+  EXPECT_NE(inside::start_phase(), START_AXIS);
 }
 
 // Windows that never show the axis, for want of voltage: 20 ms, then the drive says so.
@@ -79,7 +79,7 @@ TEST_F(StartRefused, WithoutAnAxisItGivesUp) {
   ASSERT_EQ(inside::state(), DRIVE_START);
   int n = 0;
   for (; n < 400 && inside::state() == DRIVE_START; ++n) {
-    inside::avv().regression.information = 0;
+    inside::avv_information() = 0;
     starting.axis.count = 0;
     period();
   }
@@ -96,13 +96,13 @@ TEST_F(StartRefused, TheBootstrapSuppliesAreChargedFirst) {
   use_parameters();
   drive_command_start();
   period();
-  ASSERT_EQ(inside::start_found().phase, START_CHARGE);
+  ASSERT_EQ(inside::start_phase(), START_CHARGE);
   EXPECT_FALSE(board.gates_on);
   int on = 0;
-  for (int n = 0; n < 200 && inside::start_found().phase == START_CHARGE; ++n) {
+  for (int n = 0; n < 200 && inside::start_phase() == START_CHARGE; ++n) {
     period();
     on += board.gates_on ? 1 : 0;
-    EXPECT_TRUE(inside::flags().shorted || inside::start_found().phase != START_CHARGE);
+    EXPECT_TRUE(inside::is_shorted() || inside::start_phase() != START_CHARGE);
   }
   EXPECT_EQ(inside::state(), DRIVE_START);
   EXPECT_NEAR(on, 50, 2);
@@ -116,7 +116,7 @@ TEST_F(StartRefused, ChargingGoesOnInAPeriodWithoutSamples) {
   until_on();
   for (int n = 0; n < 4; ++n) period(still_window(), inside::sampled_pattern().window_count);
   EXPECT_EQ(inside::window_count(), 0);
-  EXPECT_EQ(inside::start_found().phase, START_CHARGE);
+  EXPECT_EQ(inside::start_phase(), START_CHARGE);
   EXPECT_TRUE(board.gates_on);
   EXPECT_EQ(starting.charged, 4);
 }
@@ -131,12 +131,12 @@ TEST_F(StartRefused, AShortCircuitThatCarriesACurrentRests) {
   w.start_a = 4 * (2048 + 8 * 102);  // 8 A of 14
   w.end_a = 3 * (2048 + 8 * 102);
   for (int n = 0; n < 4; ++n) period(w);
-  EXPECT_EQ(inside::start_found().phase, START_CHARGE);
+  EXPECT_EQ(inside::start_phase(), START_CHARGE);
   EXPECT_FALSE(board.gates_on);
   int rest = 0;
   for (; rest < 100 && !board.gates_on; ++rest) period();
   EXPECT_NEAR(rest, 20, 4);
-  EXPECT_EQ(inside::start_found().phase, START_CHARGE) << "only what they were on counts";
+  EXPECT_EQ(inside::start_phase(), START_CHARGE) << "only what they were on counts";
 }
 
 // Whole periods, and no fewer than asked for.
@@ -149,9 +149,9 @@ TEST_F(StartRefused, ChargingTakesAsLongAsItIsTold) {
     until_on();
     inside::window_count() = 0;
     for (int n = 1; n < periods_on; ++n) start_state.step(&drive);
-    EXPECT_EQ(inside::start_found().phase, START_CHARGE) << ms;
+    EXPECT_EQ(inside::start_phase(), START_CHARGE) << ms;
     start_state.step(&drive);
-    EXPECT_NE(inside::start_found().phase, START_CHARGE) << ms;
+    EXPECT_NE(inside::start_phase(), START_CHARGE) << ms;
   }
 }
 
@@ -168,7 +168,7 @@ TEST_F(StartRefused, ACurrentOfHalfTheLimitEndsTheShortCircuit) {
           use_parameters();
           drive_command_start();
           until_on();
-          inside::flags().invalid = blind ? 1 : 0;
+          inside::invalid_periods() = blind ? 1 : 0;
           inside::window_count() = 2;
           inside::windows()[0].current_q20 = inside::windows()[1].current_q20 = {0, 0};
           inside::windows()[latest ? 1 : 0].current_q20 = raw_ab(way * (share * half), 20);
@@ -186,7 +186,7 @@ TEST_F(StartRefused, AShortCircuitRestsForTwoMilliseconds) {
   use_parameters();
   drive_command_start();
   until_on();
-  inside::flags().invalid = 0;
+  inside::invalid_periods() = 0;
   inside::window_count() = 1;
   inside::windows()[0].current_q20 = {parameters.current_limit, 0};
   start_state.step(&drive);

@@ -51,7 +51,7 @@ TEST_F(StartStanding, TheAxisIsFoundInTwelvePeriods) {
   const machine_model_t& m = inside::model();
   const double half = 0.5 * (real(m.yd_q30, 30) - real(m.yq_q30, 30)), spread = 40000.0;
   int n = 0;
-  for (; inside::start_found().phase == START_AXIS && n < 50; ++n) {
+  for (; inside::start_phase() == START_AXIS && n < 50; ++n) {
     regression_t& r = inside::avv().regression;
     r = {};
     r.information = 1000000;
@@ -60,15 +60,15 @@ TEST_F(StartStanding, TheAxisIsFoundInTwelvePeriods) {
     r.mirror_q16 = raw((std::cos(2.0 * kThere) - 1.0) * half * spread, 16);  // the model has it at zero
     r.cross_q16 = raw(std::sin(2.0 * kThere) * half * spread, 16);
     step();
-    if (inside::start_found().phase == START_AXIS) {
-      EXPECT_EQ(inside::avv().observer.angle_bam, 0u);
+    if (inside::start_phase() == START_AXIS) {
+      EXPECT_EQ(inside::avv_angle_bam(), 0u);
       EXPECT_FALSE(inside::loop_is_closed());
     }
   }
   EXPECT_EQ(n, 3 + 12);
-  EXPECT_EQ(inside::start_found().phase, START_SETTLE);
+  EXPECT_EQ(inside::start_phase(), START_SETTLE);
   EXPECT_TRUE(inside::loop_is_closed());
-  EXPECT_NEAR(rad(inside::avv().observer.angle_bam), kThere, 1e-4);
+  EXPECT_NEAR(rad(inside::avv_angle_bam()), kThere, 1e-4);
   EXPECT_NEAR(real(m.trim.mean_q30, 30), 0.0005, 1e-6);
   EXPECT_NEAR(real(m.trim.half_q30, 30), 0.0, 1e-6);
 }
@@ -77,7 +77,7 @@ TEST_F(StartStanding, TheAxisIsFoundInTwelvePeriods) {
 void find_axis(double saliency, void (*step)()) {
   const machine_model_t m = inside::model();
   const double half = 0.5 * (real(m.yd_q30, 30) - real(m.yq_q30, 30)), spread = 40000.0;
-  for (int n = 0; inside::state() == DRIVE_START && inside::start_found().phase == START_AXIS && n < 50; ++n) {
+  for (int n = 0; inside::state() == DRIVE_START && inside::start_phase() == START_AXIS && n < 50; ++n) {
     regression_t& r = inside::avv().regression;
     r = {};
     r.information = 1000000;
@@ -106,7 +106,7 @@ TEST_F(StartStanding, WhatIsWrongWithTheWiresIsAFault) {
     inside::wiring() = c.wiring;
     find_axis(1.0, step);
     EXPECT_EQ(inside::fault(), c.fault) << c.wiring;
-    EXPECT_EQ(inside::start_found().phase, c.fault == FAULT_NONE ? START_SETTLE : START_AXIS) << c.wiring;
+    EXPECT_EQ(inside::start_phase(), c.fault == FAULT_NONE ? START_SETTLE : START_AXIS) << c.wiring;
     EXPECT_EQ(board.gates_on, c.fault == FAULT_NONE) << c.wiring;
   }
 }
@@ -117,12 +117,12 @@ TEST_F(StartStanding, WithoutAnAxisACommissioningBeginsAtOnce) {
   for (const drive_state_t behind : {DRIVE_RUN, DRIVE_COMMISSION}) {
     for (const double saliency : {1.0, 0.0}) {
       SetUp();
-      inside::flags().behind = behind;
+      inside::state_behind() = behind;
       find_axis(saliency, step);
       const bool at_once = behind == DRIVE_COMMISSION && saliency == 0.0;
       EXPECT_EQ(inside::start_found().uniform, saliency == 0.0);
       EXPECT_EQ(inside::state(), at_once ? DRIVE_COMMISSION : DRIVE_START) << behind << saliency;
-      EXPECT_EQ(inside::start_found().phase, at_once ? START_AXIS : START_SETTLE) << behind << saliency;
+      EXPECT_EQ(inside::start_phase(), at_once ? START_AXIS : START_SETTLE) << behind << saliency;
     }
   }
 }
@@ -143,7 +143,7 @@ TEST_F(StartStanding, WithoutAPolarityTestTheAxisIsTaken) {
     step();
     expect_runs(kThere);
     const bool turns = std::fabs(rpm) > 20.0;
-    EXPECT_NEAR(rad_per_s(inside::speed_ramp().value), turns ? speed : 0.0, 0.01) << rpm;
+    EXPECT_NEAR(rad_per_s(inside::ramped_bpp()), turns ? speed : 0.0, 0.01) << rpm;
     EXPECT_EQ(brake_release_hold.left, turns ? 0u : 400u) << rpm;
     EXPECT_EQ(inside::start_found().sigma_q8, 0);
   }
@@ -166,13 +166,13 @@ TEST_F(StartStanding, TheResistanceIsTakenWhereItIsOff) {
 
 TEST_F(StartStanding, TheGatesHaveTheirInstant) {
   start_power(&drive, false);
-  EXPECT_FALSE(board.gates_on || !inside::flags().gates_off);
+  EXPECT_FALSE(board.gates_on || !inside::gates_off());
   board.pwm_tick = 4321;
-  inside::flags().invalid = 0;
+  inside::invalid_periods() = 0;
   start_power(&drive, true);
-  EXPECT_TRUE(board.gates_on && !inside::flags().gates_off);
+  EXPECT_TRUE(board.gates_on && !inside::gates_off());
   EXPECT_EQ(start().on_tick, 4321);
-  EXPECT_EQ(inside::flags().invalid, 2) << "this period and the next have begun with the gates off";
+  EXPECT_EQ(inside::invalid_periods(), 2) << "this period and the next have begun with the gates off";
 }
 
 TEST_F(StartStanding, NoTorqueIsAskedForWhenItIsOver) {
@@ -197,7 +197,7 @@ TEST_F(StartStanding, WhatRunsGoesOnFromTheAngleAndTheSpeed) {
   EXPECT_EQ(polarity_watch.axis.angle_bam, bam(0.8));
   EXPECT_EQ(polarity_watch.axis.speed_bpp, bpp(100.0));
   EXPECT_EQ(brake_release_hold.left, 0u);
-  EXPECT_EQ(inside::speed_ramp().value, bpp(100.0));
+  EXPECT_EQ(inside::ramped_bpp(), bpp(100.0));
   EXPECT_EQ(inside::speed_controller().current_q20, 0);
 }
 

@@ -24,29 +24,29 @@ class StartStanding : public Drive {
     use_parameters();
     make_ready();
     start_state.begin(&drive, DRIVE_RUN);
-    ASSERT_EQ(inside::start_found().phase, START_AXIS);
+    ASSERT_EQ(inside::start_phase(), START_AXIS);
   }
   static drive_start_t& start() { return starting; }
 
   /// A period of the start, and the one that it asks for a decision alone.
   static void step() {
-    const std::uint16_t before = inside::start_found().phase;
+    const std::uint16_t before = inside::start_phase();
     start_state.step(&drive);
-    inside::schedule().exclusive = inside::state() == DRIVE_START && inside::flags().wants_exclusive;
-    if (!inside::schedule().exclusive) return;
-    EXPECT_EQ(inside::start_found().phase, before);
+    inside::is_exclusive() = inside::state() == DRIVE_START && inside::wants_exclusive();
+    if (!inside::is_exclusive()) return;
+    EXPECT_EQ(inside::start_phase(), before);
     start_state.step(&drive);
-    EXPECT_FALSE(inside::flags().wants_exclusive);
-    inside::schedule().exclusive = false;
+    EXPECT_FALSE(inside::wants_exclusive());
+    inside::is_exclusive() = false;
   }
 
   /// At the end of a phase, with AVV's angle at hand.
   static void at(start_phase_t phase, int tick, double speed = 0.0) {
-    inside::start_found().phase = phase;
+    inside::start_phase() = phase;
     start().tick = static_cast<std::uint16_t>(tick - 1);
-    inside::avv().observer.angle_bam = bam(kThere);
-    inside::avv().observer.speed_bpp = bpp(speed);
-    inside::avv().error_bam = 0;
+    inside::avv_angle_bam() = bam(kThere);
+    inside::avv_speed_bpp() = bpp(speed);
+    inside::avv_error_bam() = 0;
   }
   /// The test by saturation is over with this result.
   static void saturation_says(polarity_result_t result) {

@@ -27,7 +27,7 @@ class VectorBack : public Drive {
     use_parameters();
     drive_enter(&drive, DRIVE_RUN);
     inside::loop_is_closed() = true;
-    inside::speed_ramp().value = at(reference);
+    inside::ramped_bpp() = at(reference);
     inside::target_bpp() = at(target);
     inside::selected() = {bam(0.5), at(reference), 0, 32767};
     inside::per_torque_constant() = q_invert(inside::model().torque_q24);
@@ -44,7 +44,7 @@ class VectorBack : public Drive {
   static void turn() {
     inside::command_dq_q16() = {0, 0};
     for (int n = 0; n < DRIVE_PERIODS_PER_MS; ++n) {
-      inside::schedule().task = (n == 0) ? TASK_FIELD : TASK_SLOT;
+      inside::scheduled_task() = (n == 0) ? TASK_FIELD : TASK_SLOT;
       (void)if_ramp_phase.step(&drive);
     }
   }
@@ -62,12 +62,12 @@ TEST_F(VectorBack, ASpeedThatTheEmfDoesNotShowIsTheVectors) {
     run(c.reference, c.target);
     step();
     EXPECT_EQ(inside::state(), c.taken ? DRIVE_START : DRIVE_RUN) << c.reference << " " << c.target;
-    EXPECT_EQ(inside::flags().open_loop, c.taken);
+    EXPECT_EQ(inside::is_open_loop(), c.taken);
     if (!c.taken) continue;
-    EXPECT_EQ(inside::flags().behind, DRIVE_RUN);
-    EXPECT_EQ(inside::flags().unseen, KNOWN_ROTOR);
-    EXPECT_EQ(inside::flags().invalid, 0u) << "the power stage stays on";
-    EXPECT_EQ(inside::start_found().phase, START_IF_RAMP);
+    EXPECT_EQ(inside::state_behind(), DRIVE_RUN);
+    EXPECT_EQ(inside::unseen(), KNOWN_ROTOR);
+    EXPECT_EQ(inside::invalid_periods(), 0u) << "the power stage stays on";
+    EXPECT_EQ(inside::start_phase(), START_IF_RAMP);
     EXPECT_TRUE(inside::loop_is_closed());
   }
 }
@@ -171,7 +171,7 @@ TEST_F(VectorBack, AWindingThatIsWarmOrColdIsMeasuredAtRest) {
     begin();
     const double resistance = real(inside::model().nominal_rs_q24, 24) + c.more;
     for (int n = 0; n < if_ramp_config.align_periods; ++n) {
-      inside::schedule().task = (n % DRIVE_PERIODS_PER_MS == 5) ? TASK_FIELD : TASK_SLOT;
+      inside::scheduled_task() = (n % DRIVE_PERIODS_PER_MS == 5) ? TASK_FIELD : TASK_SLOT;
       inside::command_dq_q16() = {raw(real(if_ramp.current_q20, 20) * resistance, 16), 0};
       (void)if_ramp_phase.step(&drive);
     }

@@ -30,7 +30,7 @@ TEST_F(StartByVector, AVectorBeginsFromRest) {
     inside::seen().angle_bam = 5;
     polarity_watch.open = true;
     if_ramp_phase.begin(&drive);
-    EXPECT_EQ(inside::start_found().phase, START_IF_RAMP);
+    EXPECT_EQ(inside::start_phase(), START_IF_RAMP);
     EXPECT_EQ(inside::current_controller().d.integral_q20 | inside::current_controller().q.integral_q20, 0);
     EXPECT_EQ(inside::seen().angle_bam, 0u);
     EXPECT_TRUE(inside::loop_is_closed());
@@ -43,11 +43,11 @@ TEST_F(StartByVector, AVectorBeginsFromRest) {
 TEST_F(StartByVector, TheEmfsDirectionIsRenewedOnceInAMillisecond) {
   if_ramp_phase.begin(&drive);
   for (const task_t task : {TASK_SPEED, TASK_JUDGE_FIRST, TASK_SLOT, TASK_RENEW, TASK_JUDGE}) {
-    inside::schedule().task = task;
+    inside::scheduled_task() = task;
     (void)if_ramp_phase.step(&drive);
     EXPECT_EQ(if_ramp.per_emf_q4.q, 0) << task;
   }
-  inside::schedule().task = TASK_FIELD;
+  inside::scheduled_task() = TASK_FIELD;
   (void)if_ramp_phase.step(&drive);
   EXPECT_NE(if_ramp.per_emf_q4.q, 0);
 }
@@ -58,9 +58,9 @@ TEST_F(StartByVector, WithoutGatesNoVectorBegins) {
   board.pin_low = true;
   if_ramp_phase.begin(&drive);
   EXPECT_EQ(inside::fault(), FAULT_OVER_CURRENT);
-  EXPECT_NE(inside::start_found().phase, START_IF_RAMP);
+  EXPECT_NE(inside::start_phase(), START_IF_RAMP);
   EXPECT_FALSE(inside::loop_is_closed());
-  EXPECT_FALSE(inside::flags().open_loop);
+  EXPECT_FALSE(inside::is_open_loop());
 }
 
 // Until the vector has reached its speed a source that would have the shaft alone knows no better than the vector; one
@@ -102,7 +102,7 @@ TEST_F(StartByVector, TheSourceTakesOverWhereTheVectorIs) {
     step();
   }
   ASSERT_EQ(inside::state(), DRIVE_RUN);
-  EXPECT_EQ(inside::speed_ramp().value, if_ramp_config.speed_bpp);
+  EXPECT_EQ(inside::ramped_bpp(), if_ramp_config.speed_bpp);
   EXPECT_EQ(inside::selected().angle_bam, inside::seen().angle_bam);
   EXPECT_EQ(flux_observer.form.cutoff_q30, 0) << "from here on the flux keeps what it knows";
   EXPECT_EQ(inside::current_controller().d.integral_q20 | inside::current_controller().q.integral_q20, 0);
@@ -117,7 +117,7 @@ TEST_F(StartByVector, TheStateBehindItBeginsAndACommissioningSpins) {
   for (const drive_state_t behind : {DRIVE_RUN, DRIVE_COMMISSION}) {
     SetUp();
     if_ramp_phase.begin(&drive);
-    inside::flags().behind = behind;
+    inside::state_behind() = behind;
     for (int n = 0; inside::state() == DRIVE_START && n < 100000; ++n) {
       inside::selected().angle_bam = if_ramp.vector_bam;
       inside::seen() = {if_ramp.vector_bam - bam(0.4), if_ramp.speed_bpp, 0, 32767};
@@ -125,8 +125,8 @@ TEST_F(StartByVector, TheStateBehindItBeginsAndACommissioningSpins) {
       step();
     }
     EXPECT_EQ(inside::state(), behind);
-    EXPECT_EQ(inside::flags().spins, behind == DRIVE_COMMISSION);
-    EXPECT_FALSE(inside::flags().open_loop);
+    EXPECT_EQ(inside::spins(), behind == DRIVE_COMMISSION);
+    EXPECT_FALSE(inside::is_open_loop());
   }
 }
 
@@ -138,12 +138,12 @@ TEST_F(StartByVector, AFluxThatTakesOverHasTheShaftAlone) {
       SetUp();
       use_source(source);
       inside::config().blend.high_bpp = if_ramp_config.speed_bpp - above;
-      inside::blend().region = BLEND_LOW;
-      inside::blend().share_q15 = 32767;
+      inside::blend_region() = BLEND_LOW;
+      inside::blend_share_q15() = 32767;
       if_ramp_phase.begin(&drive);
       const bool alone = source >= POSITION_FLUX_CONV && above != 0;
-      EXPECT_EQ(inside::blend().region, alone ? BLEND_HIGH : BLEND_LOW) << source;
-      EXPECT_EQ(inside::blend().share_q15, alone ? 0 : 32767) << source;
+      EXPECT_EQ(inside::blend_region(), alone ? BLEND_HIGH : BLEND_LOW) << source;
+      EXPECT_EQ(inside::blend_share_q15(), alone ? 0 : 32767) << source;
     }
   }
 }

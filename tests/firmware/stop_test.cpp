@@ -33,7 +33,7 @@ TEST_F(Drive, StopThatDoesNotReachStandstillFaults) {
   while (inside::state() != DRIVE_FAULT && inside::state() != DRIVE_READY && n < 2000) {
     // an encoder that goes on at 5 rpm, above the 2 rpm that count as rest
     encoder.observer.speed_bpp = raw(5.0 / 60.0 * 4.0 * kPeriod, 32);
-    inside::avv().observer.angle_bam = encoder.observer.angle_bam;
+    inside::avv_angle_bam() = encoder.observer.angle_bam;
     period();
     n++;
   }
@@ -47,7 +47,7 @@ TEST_F(Drive, AStopEndsAtTwoRevolutionsPerMinute) {
     SetUp();
     make_run();
     drive_command_stop();
-    inside::speed_ramp().value = 0;
+    inside::ramped_bpp() = 0;
     inside::state() = DRIVE_STOP;
     inside::selected().speed_bpp = bpp_of(1000) / 10000 * tenths;
     drive_sequence(&drive);

@@ -50,7 +50,7 @@ TEST_F(Store, SavedValuesComeBack) {
     EXPECT_EQ(in_force(), saved) << n;
     EXPECT_EQ(store_report()->sequence, std::uint32_t(n));
     EXPECT_EQ(store_report()->values, parameter_count());
-    EXPECT_TRUE(inside::request().reload);
+    EXPECT_TRUE(inside::reload_requested());
   }
 }
 
@@ -151,10 +151,10 @@ TEST_F(Store, LoadAndDefaultsOnCommand) {
   set_variant(3);
   const Values saved = in_force();
   save();
-  inside::request().reload = false;
+  inside::withdraw_reload();
   ASSERT_TRUE(store_defaults());
   EXPECT_EQ(in_force(), defaults());
-  EXPECT_TRUE(inside::request().reload);
+  EXPECT_TRUE(inside::reload_requested());
   ASSERT_TRUE(store_load());
   EXPECT_EQ(store_state(), STORE_READING);
   serve();
