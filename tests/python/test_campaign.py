@@ -283,3 +283,20 @@ def test_a_file_goes_on_behind_its_last_whole_line_and_only_for_its_own_campaign
     file.write_text("[1]\n")
     with pytest.raises(InputError, match="holds no cases"):
         Results(file, about, True)
+
+
+def test_a_file_is_the_same_whichever_case_was_done_first(tmp_path):
+    rows = [row(number, End.GOOD) for number in (1, 2, 10)]
+    for name, done in (("here", rows), ("there", [rows[2], rows[0], rows[1]])):
+        kept = Results(tmp_path / name, {"seed": 1}, False)
+        for each in done:
+            kept.add(each)
+        kept.put_in_order()
+    assert (tmp_path / "there").read_bytes() == (tmp_path / "here").read_bytes()
+    assert list(Results(tmp_path / "there", {"seed": 1}, True).rows.values()) == rows
+    link = tmp_path / "link"
+    link.symlink_to(tmp_path / "there")
+    kept = Results(link, {"seed": 1}, True)
+    kept.add(row(3, End.GOOD))
+    kept.put_in_order()
+    assert link.is_symlink(), "it goes on where it is"

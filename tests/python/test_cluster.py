@@ -1,36 +1,43 @@
 """Campaigns on a Dask cluster: the same results as here, byte for byte, also when a worker is lost on the way."""
 
+import functools
 import json
 import os
 import signal
+import sys
 import threading
 import time
 from pathlib import Path
 
 import distributed
 import pytest
+import typer
 from typer.testing import CliRunner
 
 from stillspin import cli
 from stillspin.cases import profile
+from stillspin.commands import type_test
+from stillspin.drive import own
+from stillspin.exit_codes import ExitCode
 from stillspin.runs import cluster, execute, startup
 from stillspin.runs.workers import Where
 
 pytest.importorskip("stillspin._core", reason="the native module is not built")
 
-CAMPAIGN = (
-    "reproduce",
-    "A10",
-    "A14",
-    "--profile",
-    "ideal",
-    "--no-paper-scheme",
-    "--no-nameplate",
-    "--jobs",
-    "1",
-    "--junit",
-    "j.xml",
-)
+REPRODUCE = "reproduce A18a --no-paper-scheme --no-nameplate --junit j.xml"
+CAMPAIGNS = [
+    REPRODUCE,
+    "drift A18a --only flux",
+    "explain A18a --profile bench --only cogging --no-alone --params told.toml",
+    "startup-matrix --quick --way flying --junit j.xml",
+    "type-test --no-commission --junit j.xml",
+    "round-trips --runs 2 --no-commission --junit j.xml",
+    "campaign --runs 4 --no-commission --json cases.json --junit j.xml",
+]
+IDEAL = ("--profile", "ideal")
+CAMPAIGN = (*REPRODUCE.split(), *IDEAL, "--jobs", "1")
+BOARDS = ("hil", "A14", "--check", "--port", "virtual", "--jobs", "1", "--json", "rows.json")
+FEWER = 6  # of a matrix and a type test
 
 
 @pytest.fixture(scope="module")
@@ -49,13 +56,36 @@ def call(folder, monkeypatch, *words):
     }
 
 
-def test_a_campaign_gives_the_same_files(two, tmp_path, monkeypatch):
+def fewer(monkeypatch, place, name):
+    """One of several of the tasks that this finds."""
+    every = getattr(place, name)
+    monkeypatch.setattr(place, name, lambda *arguments: every(*arguments)[::FEWER])
+
+
+@pytest.mark.parametrize("campaign", CAMPAIGNS, ids=lambda words: words.partition(" ")[0])
+def test_a_campaign_gives_the_same_files(campaign, two, tmp_path, monkeypatch):
     monkeypatch.setattr(execute.Outcome, "speed_ratio", 0.0)  # how fast a computer was, which the report says
-    here, ours = call(tmp_path / "here", monkeypatch, *CAMPAIGN)
-    there, theirs = call(tmp_path / "there", monkeypatch, *CAMPAIGN, "--cluster", two.scheduler_address)
+    once = functools.cache(own.firmware)  # a second for each time that it is asked
+    for module in [place for place in sys.modules.values() if getattr(place, "firmware", None) is own.firmware]:
+        monkeypatch.setattr(module, "firmware", once)
+    fewer(monkeypatch, startup, "chosen")
+    fewer(monkeypatch, type_test.carry_out, "asked")
+    told = tmp_path / "told.toml"
+    told.write_text("[parameters]\nspeed_ramp = 2900\n")
+    words = campaign.replace("told.toml", str(told)).split()
+    words += ["--jobs", "1", *(() if "--profile" in words else IDEAL)]
+    here, ours = call(tmp_path / "here", monkeypatch, *words)
+    there, theirs = call(tmp_path / "there", monkeypatch, *words, "--cluster", two.scheduler_address)
     assert (there.exit_code, there.stdout, there.stderr) == (here.exit_code, here.stdout, here.stderr)
-    assert len(ours) > 5
+    assert here.exit_code in (ExitCode.DONE, ExitCode.SHORT), here.output
+    assert len(ours) > 2 and ours.keys() == theirs.keys()
     assert {name for name in ours if ours[name] != theirs[name]} == set()
+
+
+def test_every_command_that_takes_a_cluster_is_compared():
+    commands = typer.main.get_command(cli.app).commands.items()
+    takes = {name for name, command in commands if any("--cluster" in option.opts for option in command.params)}
+    assert takes == {words.split()[0] for words in CAMPAIGNS} | {BOARDS[0]}
 
 
 def test_a_worker_that_is_lost_is_no_loss(two):
@@ -75,10 +105,9 @@ def test_a_worker_that_is_lost_is_no_loss(two):
 
 
 def test_a_board_in_the_loop_of_each_worker(two, tmp_path, monkeypatch):
-    words = ("hil", "A14", "--check", "--port", "virtual", "--jobs", "1", "--json", "rows.json")
     rows = []
     for name, more in (("here", ()), ("there", ("--cluster", two.scheduler_address))):
-        done, files = call(tmp_path / name, monkeypatch, *words, *more)
+        done, files = call(tmp_path / name, monkeypatch, *BOARDS, *more)
         assert done.exit_code == 0, done.output
         found = json.loads(files["rows.json"])["runs"]
         rows.append(sorted(({**row, "seconds": 0.0} for row in found), key=lambda row: row["run"]))

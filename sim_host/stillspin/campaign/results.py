@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from stillspin import whole_file
 from stillspin.campaign.draw import Case
 from stillspin.campaign.judge import End, Verdict
 from stillspin.errors import InputError
@@ -43,7 +44,10 @@ def _read(stored: dict[str, Any]) -> Row:
 
 
 class Results:
-    """The file of a campaign: a line that says what campaign it is, then one for every case as it ended."""
+    """The file of a campaign: a line that says what campaign it is, then one for every case as it ended.
+
+    Lines come as cases are done, so that nothing is lost; when all are, they are put in order.
+    """
 
     def __init__(self, file: Path | None, about: Mapping[str, object], resume: bool) -> None:
         """Begin the file, or go on with it.
@@ -88,6 +92,20 @@ class Results:
                 file.write(row.line() + "\n")
         except OSError as error:
             raise _not_written(self._file, error) from error
+
+    def put_in_order(self) -> None:
+        """The lines by motor and number, so that the file is the same whoever of the workers was done first.
+
+        Raises:
+            InputError: the file cannot be written.
+        """
+        if not self._file or self._file.is_symlink() or not self._file.is_file():  # a pipe, or an output of the shell
+            return
+        text = _text(self._file)
+        head = text[: text.find("\n") + 1]
+        ordered = head + "".join(self.rows[key].line() + "\n" for key in sorted(self.rows))
+        if ordered != text:
+            whole_file.write(self._file, ordered, "--json")
 
     def _take(self, text: str, about: Mapping[str, object]) -> None:
         try:

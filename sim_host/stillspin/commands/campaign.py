@@ -143,6 +143,7 @@ def campaign(
         todo = [(named[motor], drawer.case(each)) for motor, each in wanted if (motor, each) not in kept.rows]
         try:
             _run(todo, drawer, common.where, kept)
+            kept.put_in_order()
         finally:
             rows = [kept.rows[key] for key in wanted if key in kept.rows]
             verdicts.add(map(_verdict, rows))
