@@ -8,7 +8,7 @@ namespace {
 
 using namespace stillspin::test;
 
-class Guard : public Requests {
+class CommWatchdog : public Requests {
  protected:
   void SetUp() override {
     Requests::SetUp();
@@ -24,7 +24,7 @@ class Guard : public Requests {
   }
 };
 
-TEST_F(Guard, SilenceStopsTheDrive) {
+TEST_F(CommWatchdog, SilenceStopsTheDrive) {
   start(kMine);
   for (int k = 0; k < 8; ++k) {
     run(1000);
@@ -38,7 +38,7 @@ TEST_F(Guard, SilenceStopsTheDrive) {
   EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 2u) << "and it says so";
 }
 
-TEST_F(Guard, AFaultEndsItBeforeTheStartWasCarriedOut) {
+TEST_F(CommWatchdog, AFaultEndsItBeforeTheStartWasCarriedOut) {
   ASSERT_EQ(give(COMMAND_START, kMine).status(), OK);
   EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 1u);
   inside::state() = DRIVE_FAULT;
@@ -48,7 +48,7 @@ TEST_F(Guard, AFaultEndsItBeforeTheStartWasCarriedOut) {
   EXPECT_FALSE(inside::stop_requested());
 }
 
-TEST_F(Guard, ItCanBeToldToCoast) {
+TEST_F(CommWatchdog, ItCanBeToldToCoast) {
   parameters.link_reaction = LINK_REACTION_COAST;
   start(kMine);
   run(2500);
@@ -56,13 +56,13 @@ TEST_F(Guard, ItCanBeToldToCoast) {
   EXPECT_FALSE(inside::stop_requested());
 }
 
-TEST_F(Guard, WithoutItSilenceIsNothing) {
+TEST_F(CommWatchdog, WithoutItSilenceIsNothing) {
   start(0);
   run(5000);
   EXPECT_FALSE(inside::stop_requested() || inside::coast_requested());
 }
 
-TEST_F(Guard, ItIsAskedForWithTheLowestBit) {
+TEST_F(CommWatchdog, ItIsAskedForWithTheLowestBit) {
   NEEDS("commissioning");
   start(~1);
   EXPECT_FALSE(comm_watchdog_is_on());
@@ -74,7 +74,7 @@ TEST_F(Guard, ItIsAskedForWithTheLowestBit) {
 }
 
 // Whoever asks meanwhile: one that only looks, and one that holds something of its own.
-TEST_F(Guard, OtherClientsKeepNothingAlive) {
+TEST_F(CommWatchdog, OtherClientsKeepNothingAlive) {
   start(kMine);
   for (int k = 0; k < 30; ++k) {
     EXPECT_EQ(tell(kOthers).number(22, 1) & 4u, 0u);
@@ -84,7 +84,7 @@ TEST_F(Guard, OtherClientsKeepNothingAlive) {
   EXPECT_TRUE(inside::stop_requested());
 }
 
-TEST_F(Guard, AnotherClientThatGoesStopsNothing) {
+TEST_F(CommWatchdog, AnotherClientThatGoesStopsNothing) {
   start(kMine);
   (void)tell(kOthers);
   for (int k = 0; k < 30; ++k) {
@@ -94,7 +94,7 @@ TEST_F(Guard, AnotherClientThatGoesStopsNothing) {
   EXPECT_FALSE(inside::stop_requested());
 }
 
-TEST_F(Guard, AFormerClientIsToldWhyItMayNotStart) {
+TEST_F(CommWatchdog, AFormerClientIsToldWhyItMayNotStart) {
   NEEDS("commissioning");
   for (const unsigned code : {COMMAND_START, COMMAND_COMMISSION}) {
     EXPECT_EQ(give(code, 1).status(), RANGE);
@@ -106,7 +106,7 @@ TEST_F(Guard, AFormerClientIsToldWhyItMayNotStart) {
 }
 
 // From the last record on, and no earlier; then it has done its work.
-TEST_F(Guard, SilenceIsAsLongAsToldAndEndsItOnce) {
+TEST_F(CommWatchdog, SilenceIsAsLongAsToldAndEndsItOnce) {
   const auto stops_at = [](std::uint32_t ms) {
     inside::withdraw_stop();
     inside::time_ms() = ms;
@@ -133,7 +133,7 @@ TEST_F(Guard, SilenceIsAsLongAsToldAndEndsItOnce) {
   EXPECT_FALSE(comm_watchdog_is_on() || stops_at(30000));
 }
 
-TEST_F(Guard, OnlyThePortThatStartedCounts) {
+TEST_F(CommWatchdog, OnlyThePortThatStartedCounts) {
   start(kMine);
   std::uint16_t answer[RECORD_MAX];
   const std::uint16_t request[] = {REQUEST_STATUS, 7, 0x45, 0x23, 0x01, 0};
@@ -145,7 +145,7 @@ TEST_F(Guard, OnlyThePortThatStartedCounts) {
   EXPECT_TRUE(inside::stop_requested());
 }
 
-TEST_F(Guard, ItEndsWithThePowerStage) {
+TEST_F(CommWatchdog, ItEndsWithThePowerStage) {
   start(kMine);
   run(10);
   inside::state() = DRIVE_READY;

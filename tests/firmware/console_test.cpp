@@ -215,7 +215,7 @@ TEST_F(Console, AFaultIsToldUnaskedToWhoTypes) {
   inside::state() = DRIVE_RUN;
   drive_trip(&drive, FAULT_LINK_HIGH);
   run(300);
-  EXPECT_TRUE(has(text, "! fault: DC link above")) << "a terminal that keeps the guard alive is still one: " << text;
+  EXPECT_TRUE(has(text, "! fault: DC link above")) << "a terminal that keeps the watchdog alive is still one: " << text;
   (void)ask(REQUEST_IDENTITY);
   text.clear();
   inside::state() = DRIVE_RUN;

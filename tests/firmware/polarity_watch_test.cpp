@@ -133,13 +133,13 @@ TEST_F(PolarityWatch, BlindItTakesTheAngleInUse) {
     inside::command_dq_q16() = {raw(1.0, 16), raw(2.0, 16)};
     EXPECT_FALSE(step(kNone));
     EXPECT_FALSE(step(kFollow));
-    const bool blind = why != 0;
-    EXPECT_EQ(polarity_watch.samples_invalid, blind) << why;
-    EXPECT_NEAR(axis(), blind ? -1.0 : 0.5, 1e-3) << why;
-    EXPECT_EQ(polarity_watch.sign.agreed, blind ? 0 : 18);
-    EXPECT_EQ(polarity_watch.periods, blind ? 0 : 2);
-    EXPECT_EQ(polarity_watch.voltage_q12.q, blind ? 0 : raw(4.0, 12));
-    if (blind) {
+    const bool invalid = why != 0;
+    EXPECT_EQ(polarity_watch.samples_invalid, invalid) << why;
+    EXPECT_NEAR(axis(), invalid ? -1.0 : 0.5, 1e-3) << why;
+    EXPECT_EQ(polarity_watch.sign.agreed, invalid ? 0 : 18);
+    EXPECT_EQ(polarity_watch.periods, invalid ? 0 : 2);
+    EXPECT_EQ(polarity_watch.voltage_q12.q, invalid ? 0 : raw(4.0, 12));
+    if (invalid) {
       EXPECT_EQ(polarity_watch.sign.last_iq_q20, inside::current_dq_q20().q);
       EXPECT_EQ(polarity_watch.axis.speed_bpp, bpp(70.0));
     }

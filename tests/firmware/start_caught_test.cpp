@@ -99,12 +99,12 @@ TEST_F(StartCaught, AShortCircuitWithoutSamplesIsNotJudged) {
 // Of the period in which the gates came on, only what lies behind that instant belongs to the short circuit; of the
 // others all does.
 TEST_F(StartCaught, WindowsBeforeTheGatesDoNotCount) {
-  for (const int blind : {2, 1, 0}) {
+  for (const int invalid : {2, 1, 0}) {
     for (const int on : {1000, 1290, 1300, 1310, 1500, 4000, 9000}) {
       inside::start_phase() = START_PULSE;
       inside::gates_off() = false;
       starting.tick = 0;
-      inside::invalid_periods() = static_cast<std::uint16_t>(blind);
+      inside::invalid_periods() = static_cast<std::uint16_t>(invalid);
       starting.on_tick = on;
       flying_begin(&flying_start.pulse);
       inside::window_count() = 2;
@@ -116,8 +116,8 @@ TEST_F(StartCaught, WindowsBeforeTheGatesDoNotCount) {
       }
       start_state.step(&drive);
       int expected = 0;  // the devices switch 2 us after they are told
-      for (const int begin : {1500, 6500}) expected += blind == 0 || begin >= on + 200;
-      EXPECT_EQ(flying_start.pulse.windows, expected) << blind << ", " << on;
+      for (const int begin : {1500, 6500}) expected += invalid == 0 || begin >= on + 200;
+      EXPECT_EQ(flying_start.pulse.windows, expected) << invalid << ", " << on;
     }
   }
 }

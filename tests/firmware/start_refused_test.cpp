@@ -162,18 +162,18 @@ TEST_F(StartRefused, ACurrentOfHalfTheLimitEndsTheShortCircuit) {
   for (const Vector way : {Vector{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) {
     for (const double share : {0.98, 1.02}) {
       for (const bool latest : {false, true}) {
-        for (const bool blind : {false, true}) {
+        for (const bool invalid : {false, true}) {
           SetUp();
           parameters.bootstrap_time = raw(20.0, 16);
           use_parameters();
           drive_command_start();
           until_on();
-          inside::invalid_periods() = blind ? 1 : 0;
+          inside::invalid_periods() = invalid ? 1 : 0;
           inside::window_count() = 2;
           inside::windows()[0].current_q20 = inside::windows()[1].current_q20 = {0, 0};
           inside::windows()[latest ? 1 : 0].current_q20 = raw_ab(way * (share * half), 20);
           start_state.step(&drive);
-          EXPECT_EQ(board.gates_on, share < 1.0 || !latest || blind) << share << latest << blind;
+          EXPECT_EQ(board.gates_on, share < 1.0 || !latest || invalid) << share << latest << invalid;
         }
       }
     }
