@@ -144,32 +144,32 @@ std::vector<std::uint16_t> words(Self self, std::uint32_t address, std::uint32_t
 
 using Change = std::tuple<std::uint64_t, std::uint64_t, std::int64_t>;
 
-void tape(Self self, std::vector<std::uint16_t> given, const std::vector<std::vector<Change>>& inputs) {
-  chip::Tape& tape = self.board().tape();
-  if (inputs.size() > tape.inputs.size()) throw std::invalid_argument("a tape does not have so many inputs");
-  tape.given = std::move(given);
+void record(Self self, std::vector<std::uint16_t> given, const std::vector<std::vector<Change>>& inputs) {
+  chip::Recording& recording = self.board().recording();
+  if (inputs.size() > recording.inputs.size()) throw std::invalid_argument("a recording does not have so many inputs");
+  recording.given = std::move(given);
   for (std::size_t k = 0; k < inputs.size(); ++k) {
-    std::vector<chip::TapeInput::Change> changes;
+    std::vector<chip::RecordedInput::Change> changes;
     for (const auto& [samples, looks, value] : inputs[k]) changes.push_back({samples, looks, value});
-    tape.inputs[k].give(std::move(changes));
+    recording.inputs[k].give(std::move(changes));
   }
 }
 
 // Codes of the converter, writes to the ePWM as (samples before it, address, value, address behind its instruction),
 // and of each other input its changes.
-nb::tuple taped(Self self) {
-  const chip::Tape& tape = self.board().tape();
+nb::tuple recorded(Self self) {
+  const chip::Recording& recording = self.board().recording();
   nb::list writes;
-  for (const auto& write : tape.writes) {
+  for (const auto& write : recording.writes) {
     writes.append(nb::make_tuple(write.samples, write.address, write.value, write.program));
   }
   nb::list inputs;
-  for (const chip::TapeInput& input : tape.inputs) {
+  for (const chip::RecordedInput& input : recording.inputs) {
     std::vector<Change> changes;
     for (const auto& change : input.changes()) changes.emplace_back(change.samples, change.looks, change.value);
     inputs.append(changes);
   }
-  return nb::make_tuple(tape.samples, writes, inputs);
+  return nb::make_tuple(recording.samples, writes, inputs);
 }
 
 void replace_flash_library(Self self, std::uint32_t erase, std::uint32_t program, std::uint32_t verify,
@@ -218,8 +218,8 @@ void bind_code(nb::class_<PythonBoard>& board) {
       .def(
           "raise_interrupt", [](Self self, unsigned vector) { self.board().executing().raise_interrupt(vector); },
           nb::arg("vector"))
-      .def("tape", &tape, nb::arg("given"), nb::arg("inputs") = std::vector<std::vector<Change>>())
-      .def("taped", &taped)
+      .def("record", &record, nb::arg("given"), nb::arg("inputs") = std::vector<std::vector<Change>>())
+      .def("recorded", &recorded)
       .def(
           "load_rom", [](Self self, const chip::CodeBlocks& blocks) { self.board().executing().load_rom(blocks); },
           nb::arg("blocks"))

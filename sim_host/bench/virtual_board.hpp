@@ -96,8 +96,8 @@ class VirtualBoard final : private PeriodListener {
   std::uint64_t trips() const { return board_.trips(); }
   const Board& pins() const { return board_; }
   std::uint16_t inspect(std::uint32_t address) { return chip_.inspect(address); }
-  /// chip::Chip::tape, of the firmware or of an image.
-  chip::Tape& tape() { return chip_.tape(); }
+  /// chip::Chip::recording, of the firmware or of an image.
+  chip::Recording& recording() { return chip_.recording(); }
   bool executes() const { return executes_; }
   /// The chip that executes the image; std::logic_error where the firmware runs. Where its core's watch stops it,
   /// advance returns early.

@@ -265,9 +265,9 @@ void Core::bus_write(std::uint32_t address, std::uint16_t value) {
 std::uint16_t Core::read_gpio(std::uint16_t offset) {
   const std::uint16_t seen = gpio_.read(offset, now_);
   const int word = Gpio::level_word(offset);
-  if (tape_ == nullptr || word < 0) return seen;
+  if (recording_ == nullptr || word < 0) return seen;
   const std::uint16_t own = gpio_.driven_here(word);
-  const std::int64_t from_outside = tape_->look(Tape::kPins + static_cast<unsigned>(word), seen & ~own);
+  const std::int64_t from_outside = recording_->look(Recording::kPins + static_cast<unsigned>(word), seen & ~own);
   return static_cast<std::uint16_t>((from_outside & ~own) | (seen & own));
 }
 
@@ -276,7 +276,7 @@ void Core::write_epwm(std::uint32_t address, std::uint16_t value) {
   const std::uint16_t offset = offset_in_page(address);
   if (gate_stops(system_.epwm_clock(module), address)) return;
   if (epwm_register_protected(offset) && protection_stops(address)) return;
-  if (tape_ != nullptr) tape_->write(address, value, code_ != nullptr ? code_->cpu().r.pc : 0);
+  if (recording_ != nullptr) recording_->write(address, value, code_ != nullptr ? code_->cpu().r.pc : 0);
   epwm_.write(module, offset, value, now_);
   set_due(kEPwm, epwm_.next_event());
 }

@@ -40,7 +40,7 @@ bool Chip::is_idle() const { return core_->is_idle(); }
 void Chip::on_jump(Jump jump) { core_->on_jump(std::move(jump)); }
 c28x::Core& Chip::execute_code() { return core_->execute_code(); }
 void Chip::replace_flash_library(const FlashLibrary& places) { core_->replace_flash_library(places); }
-Tape& Chip::tape() { return core_->tape(); }
+Recording& Chip::recording() { return core_->recording(); }
 void Chip::raise_interrupt(unsigned vector) {
   if (core_->raise_from_outside(vector)) return;
   throw std::invalid_argument("no interrupt line has vector " + std::to_string(vector) + ": 13, 14, 32 to 127");

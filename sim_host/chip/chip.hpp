@@ -30,7 +30,7 @@
 
 #include "sim_host/chip/code_flash_library.hpp"
 #include "sim_host/chip/in_vain.hpp"
-#include "sim_host/chip/tape.hpp"
+#include "sim_host/chip/recording.hpp"
 #include "sim_host/chip/world.hpp"
 
 namespace stillspin::c28x {
@@ -130,7 +130,7 @@ class Chip {
   void replace_flash_library(const FlashLibrary& places);
   /// From the first call on what the converter sees and what is written to the ePWM modules is noted; codes that are
   /// given to it go to the converter.
-  Tape& tape();
+  Recording& recording();
   /// A request as if the vector's peripheral had made it; std::invalid_argument for a vector that has no line.
   void raise_interrupt(unsigned vector);
   /// Words by address into flash and RAM; std::invalid_argument where there is none.

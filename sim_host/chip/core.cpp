@@ -271,7 +271,7 @@ void Core::look_at_pins() {
 void Core::update_trips() {
   pins_dirty_ = false;
   unsigned active = gpio_.trips_routed() ? gpio_.active_trips(now_) : 0;
-  if (tape_ != nullptr) active = static_cast<unsigned>(tape_->look(Tape::kTrips, active));
+  if (recording_ != nullptr) active = static_cast<unsigned>(recording_->look(Recording::kTrips, active));
   if (active == trips_) return;
   trips_ = active;
   epwm_.set_trip_pins(active, now_);
@@ -335,7 +335,7 @@ void Core::pwm_outputs(int module, bool a, bool b, Tick t) {
 std::uint16_t Core::sample(int channel, Tick t) {
   world_touched_ = true;
   const std::uint16_t seen = world_.adc_sample(t, channel);
-  return tape_ != nullptr ? tape_->sample(seen) : seen;
+  return recording_ != nullptr ? recording_->sample(seen) : seen;
 }
 
 Tick Core::serial_reaches(Tick t, bool level) {
@@ -356,7 +356,7 @@ void Core::i2c_pins(bool sda, bool scl, Tick t) {
 
 std::int64_t Core::encoder_edges(Tick t) {
   if (gpio_.encoder_routed()) encoder_held_ = world_.encoder_edges(t);
-  if (tape_ != nullptr) encoder_held_ = tape_->look(Tape::kEncoder, encoder_held_);
+  if (recording_ != nullptr) encoder_held_ = recording_->look(Recording::kEncoder, encoder_held_);
   return encoder_held_;
 }
 

@@ -31,9 +31,9 @@
 #include "sim_host/chip/interrupts.hpp"
 #include "sim_host/chip/memory.hpp"
 #include "sim_host/chip/peripheral.hpp"
+#include "sim_host/chip/recording.hpp"
 #include "sim_host/chip/sci.hpp"
 #include "sim_host/chip/system_control.hpp"
-#include "sim_host/chip/tape.hpp"
 #include "sim_host/chip/watchdog.hpp"
 
 namespace stillspin::chip {
@@ -69,9 +69,9 @@ class Core final : public ChipServices {
   c28x::Core& execute_code();
   void replace_flash_library(const FlashLibrary& places);
   const InVain& in_vain();
-  Tape& tape() {
-    if (tape_ == nullptr) tape_ = std::make_unique<Tape>();
-    return *tape_;
+  Recording& recording() {
+    if (recording_ == nullptr) recording_ = std::make_unique<Recording>();
+    return *recording_;
   }
   bool raise_from_outside(unsigned vector) { return interrupts_.raise(vector); }
 
@@ -276,8 +276,8 @@ class Core final : public ChipServices {
   std::exception_ptr exception_;
   Coroutine coroutine_;
   std::unique_ptr<CodeCpu> code_;
-  std::unique_ptr<Tape> tape_;  // nothing is noted without
-  Memory memory_;               // large: behind what every access touches
+  std::unique_ptr<Recording> recording_;  // nothing is noted without
+  Memory memory_;                         // large: behind what every access touches
 };
 
 }  // namespace stillspin::chip

@@ -90,16 +90,16 @@ class NativeCode(Protocol):
         """A request as if the vector's peripheral had made it; ValueError for a vector that has no line."""
         ...
 
-    def tape(self, given: list[int], inputs: list[list[Change]] = ...) -> None:
+    def record(self, given: list[int], inputs: list[list[Change]] = ...) -> None:
         """Note from now on what comes from outside and what is written to the ePWM; also of the firmware.
 
         Args:
             given: codes for the converter instead, in the order of its samples, as long as there are some.
-            inputs: levels of pins, trip inputs and the encoder instead, as `taped` has them.
+            inputs: levels of pins, trip inputs and the encoder instead, as `recorded` has them.
         """
         ...
 
-    def taped(self) -> tuple[list[int], list[tuple[int, int, int, int]], list[list[Change]]]:
+    def recorded(self) -> tuple[list[int], list[tuple[int, int, int, int]], list[list[Change]]]:
         """What has been noted.
 
         Codes; writes: samples before, address, value, address behind the instruction (0 of the firmware); changes of

@@ -235,7 +235,7 @@ TEST_F(Commissioning, TheLongerSettlingStaysForOneThatWasAskedFor) {
 }
 
 // Played from a recording, the background's work is done where it was done, and not before.
-TEST_F(Commissioning, ATapeDecidesWhenTheBackgroundWorks) {
+TEST_F(Commissioning, ARecordingDecidesWhenTheBackgroundWorks) {
   begin();
   commissioning.phase = COMMISSIONING_EVALUATE;
   commissioning.evaluate = true;

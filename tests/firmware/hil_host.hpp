@@ -17,7 +17,7 @@ extern "C" {
 namespace stillspin::test {
 
 /// From now on the board's pulses and windows are played while a recording is played, as the drivers do it.
-inline void let_tapes_play() {
+inline void let_recordings_play() {
   board.plays_frame = [](const hal_pwm_frame_t& frame, bool* in_time) {
     replay_output(REPLAY_FRAME, frame.edge_tick, HAL_PWM_LEGS);
     replay_call();

@@ -30,7 +30,7 @@ class Stepping : public Drive {
   void SetUp() override {
     NEEDS("hil");
     Drive::SetUp();
-    let_tapes_play();
+    let_recordings_play();
     enter();
   }
   void TearDown() override { hil_reset(); }
@@ -59,7 +59,7 @@ class Stepping : public Drive {
   }
   static HilPeriod empty() { return {{}, {kInTime}, {}}; }
 
-  static void expect_on_tape(const HilPeriod& told) {
+  static void expect_in_recording(const HilPeriod& told) {
     const replay_period_t& p = hal_replay_period;
     EXPECT_EQ(Words(p.inputs, p.inputs + p.input_count), told.inputs);
     EXPECT_EQ(Words(p.works, p.works + p.work_count), told.works);
@@ -143,11 +143,11 @@ TEST_F(Stepping, ADriveDoesWhatItDoesByItself) {
   }
 }
 
-TEST_F(Stepping, WhatIsToldStandsOnTheTape) {
+TEST_F(Stepping, WhatIsToldStandsInTheRecording) {
   for (int n = 0; n < 500; ++n) {
     const HilPeriod told = n % 10 == 0 ? fullest() : any_period();
     const HilAnswer a = step(told);
-    ASSERT_NO_FATAL_FAILURE(expect_on_tape(told)) << n;
+    ASSERT_NO_FATAL_FAILURE(expect_in_recording(told)) << n;
     ASSERT_TRUE(a.fits) << n;
     ASSERT_EQ(a.sequence, n);
     ASSERT_EQ(a.torn, hal_replay.torn ? 1 : 0) << n;
@@ -168,7 +168,7 @@ TEST_F(Stepping, ALoopBeginsWithZerosWhateverWasBefore) {
   EXPECT_TRUE(a.fits);
   EXPECT_EQ(a.torn, 1);
   EXPECT_EQ(a.outputs.size(), 4u);
-  expect_on_tape(told);
+  expect_in_recording(told);
 }
 
 TEST_F(Stepping, AStepThatIsNotWholeChangesNothing) {
@@ -188,10 +188,10 @@ TEST_F(Stepping, AStepThatIsNotWholeChangesNothing) {
   EXPECT_TRUE(answer.empty());
   EXPECT_EQ(hil_expected(), 1);
   EXPECT_EQ(hil_signals_crc(), crc);
-  expect_on_tape(first);
+  expect_in_recording(first);
   EXPECT_EQ(give(whole, &answer), HIL_OK) << "it comes again, whole";
   EXPECT_TRUE(host.read(answer).fits);
-  expect_on_tape(second);
+  expect_in_recording(second);
 }
 
 // The background's work stands on the side of the step on which it was done, as often as it was done.

@@ -19,7 +19,7 @@ class HostInTheLoop : public Requests {
   void SetUp() override {
     NEEDS("hil");
     Requests::SetUp();
-    let_tapes_play();
+    let_recordings_play();
   }
   void TearDown() override { hil_reset(); }
 
@@ -147,7 +147,7 @@ TEST_F(HostInTheLoop, AHostThatIsGoneResetsTheBoard) {
   EXPECT_TRUE(is_alive()) << "nobody is missed before he is let in";
 }
 
-TEST_F(HostInTheLoop, AStepIsNoLongerThanItsTape) {
+TEST_F(HostInTheLoop, AStepIsNoLongerThanItsRecording) {
   const Octets longest = {REPLAY_WINDOWS, REPLAY_RESULTS, REPLAY_INPUTS, REPLAY_WORKS};
   ASSERT_EQ(ask(REQUEST_HIL_ENTER).status(), OK);
   for (std::size_t k = 0; k < longest.size(); ++k) {

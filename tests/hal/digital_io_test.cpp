@@ -39,7 +39,7 @@ TEST_F(DigitalIo, emergency_stop_is_pressed_when_its_line_is_low) {
 }
 
 // What hangs on the lines of a board in the loop is no simulation's.
-TEST_F(DigitalIo, emergency_stop_of_a_tape_is_the_tapes) {
+TEST_F(DigitalIo, emergency_stop_of_a_recording_is_the_recordings) {
   hal_replay_start(REPLAY_RECORDS, nullptr);
   EXPECT_FALSE(hal_digital_io_emergency());
   EXPECT_EQ(hal_replay_period.inputs[0], 0);

@@ -22,7 +22,7 @@ TEST_F(OnChipPwm, no_device_is_ever_on_before_the_gates_are) {
 }
 
 // Host in the loop: what the drive asks of the gates is played and noted, never done.
-TEST_F(OnChipPwm, no_device_is_ever_on_while_a_tape_plays) {
+TEST_F(OnChipPwm, no_device_is_ever_on_while_a_recording_plays) {
   hal_replay_start(REPLAY_PLAYS, [] {});
   replay_period_t& period = hal_replay_period;
   period.input_count = REPLAY_INPUTS;

@@ -171,7 +171,7 @@ TEST_F(Pwm, frame_of_an_overrun_control_interrupt_writes_nothing) {
 }
 
 // A computer that plays the recording must find the drive as late as it was.
-TEST_F(Pwm, a_tape_says_whether_a_frame_was_in_time) {
+TEST_F(Pwm, a_recording_says_whether_a_frame_was_in_time) {
   const hal_pwm_frame_t frame = frame_of_distinct_values();
   for (const bool in_time : {true, false}) {
     hal_replay_start(REPLAY_RECORDS, nullptr);

@@ -148,7 +148,7 @@ TEST_F(ReplayOfDrivers, each_call_is_played_without_its_registers) {
   }
 }
 
-TEST_F(ReplayOfDrivers, nothing_is_noted_without_a_tape) {
+TEST_F(ReplayOfDrivers, nothing_is_noted_without_a_recording) {
   start(REPLAY_OFF);
   for (const Call& call : kCalls) {
     const std::uint32_t result = call.act();

@@ -51,7 +51,7 @@ link_errors_t link_errors(void) {
 void drive_reset(void) { scope_reset(); }
 
 // What the drive asks of the recording while it is stepped, in any order.
-static void ask_the_tape(void) {
+static void ask_the_recording(void) {
   uint16_t words[REPLAY_OUTPUTS];
   any_octets(words, REPLAY_OUTPUTS);
   while (any_bool()) {
@@ -65,14 +65,14 @@ static void ask_the_tape(void) {
 void drive_window_interrupt(void) {
   uint16_t results[REPLAY_RESULTS];
   if (any_bool()) replay_take_results(results, any_bool() ? REPLAY_RESULTS : 3u);
-  ask_the_tape();
+  ask_the_recording();
 }
 
 void drive_control_step(drive_t* d) {
   (void)d;
   while (any_bool()) {
     replay_call();
-    ask_the_tape();
+    ask_the_recording();
   }
 }
 

@@ -14,7 +14,7 @@ from stillspin.cases import profile, scenario_file
 from stillspin.drive.own import firmware
 from stillspin.errors import InputError
 from stillspin.flash import demonstration
-from stillspin.image import opened, tape
+from stillspin.image import opened, recording
 from stillspin.revision import revision
 from stillspin.runs import execute
 from stillspin.runs.execute import Settings
@@ -25,11 +25,11 @@ OCTET = [(0.017, "f0")]
 
 
 def played(file, seed, given=None, seconds=FOR):
-    """What is recorded of an image, and a comparison with a tape while its board is on."""
+    """What is recorded of an image, and a comparison with a recording while its board is on."""
     board = opened.power_on(opened.read(file), "bench", "A", seed)
     try:
-        made = tape.play(board, seconds, OCTET, given)
-        return made, lambda other: tape.compare(other, board), board
+        made = recording.play(board, seconds, OCTET, given)
+        return made, lambda other: recording.compare(other, board), board
     except BaseException:
         board.close()
         raise
@@ -100,11 +100,11 @@ def test_the_firmware_is_recorded_as_well():
     chosen = profile.load("bench", core.plant_schema(native), core.parameters(native), "A")
     board = power.power(native, chosen, profile.Changes(), 1)
     try:
-        made = tape.play(board, 0.15, [(0.1, b"start\r".hex())])
+        made = recording.play(board, 0.15, [(0.1, b"start\r".hex())])
     finally:
         board.close()
     assert len(made.samples) > 100
-    assert {tape.register(write[1]) for write in made.writes} >= {"EPwm1.CMPA", "EPwm1.TBPRD", "EPwm2.CMPA"}
+    assert {recording.register(write[1]) for write in made.writes} >= {"EPwm1.CMPA", "EPwm1.TBPRD", "EPwm2.CMPA"}
 
 
 RUN_PIN = 25
@@ -117,19 +117,19 @@ def watched(file, given=None, pressed=(), over=False):
         plant=plant, parameters={}, seed=1, image=blocks_of(opened.read(file).program, str(file))
     )
     try:
-        board.tape(given.samples if given else [], given.inputs if given else [])
+        board.record(given.samples if given else [], given.inputs if given else [])
         for number in range(150):
             board.set_input("run", float(number in pressed))
             board.set_input("emergency", float(over and number >= 120))
             board.advance(20_000)
-        samples, writes, inputs = board.taped()
-        recorded = tape.Tape(0.03, samples, [write[:3] for write in writes], [], "", inputs)
-        return recorded, tape.compare(given, board) if given else None
+        samples, writes, inputs = board.recorded()
+        recorded = recording.Recording(0.03, samples, [write[:3] for write in writes], [], "", inputs)
+        return recorded, recording.compare(given, board) if given else None
     finally:
         board.close()
 
 
-def test_pins_and_encoder_come_from_the_tape(tmp_path):
+def test_pins_and_encoder_come_from_the_recording(tmp_path):
     file = linked_file(tmp_path, "watching")
     recorded, _ = watched(file, pressed=range(60, 90), over=True)
     pins = recorded.inputs[RUN_PIN // 16]
@@ -156,21 +156,21 @@ def test_a_scenario_is_played_back_bit_for_bit(identifier):
     """The firmware on another plant with other noise, whose shaft nobody loads: A12 has its angle from the encoder."""
     native = core.load()
     job = of_scenario(identifier, 0.1)
-    recorded, played = tape.of_run(native, job, job.image, None)
+    recorded, played = recording.of_run(native, job, job.image, None)
     assert played.completed
     assert len(recorded.writes) > 10_000
     for given, same in ((recorded, True), (replace(recorded, inputs=[[], [], [], [], []]), identifier == "A10")):
         other = {"solver": {"method": "rk4"}, "initial": {"angle": 1.0}}
         board = native.VirtualBoard(plant=other, parameters={}, seed=9)
         try:
-            tape.play(board, recorded.seconds, recorded.octets, given)
-            assert (tape.compare(recorded, board) is None) is same
+            recording.play(board, recorded.seconds, recorded.octets, given)
+            assert (recording.compare(recorded, board) is None) is same
         finally:
             board.close()
 
 
 def test_a_run_of_a_scenario_is_chosen(tmp_path):
-    file = tmp_path / "control.tape"
+    file = tmp_path / "control.rec"
     image = linked_file(tmp_path, "control")
     done = run_command("record", file, "--image", image, "--scenario", "A10", "--run", "creep", "--for", "0.05")
     assert done.exit_code == 0, done.stderr
@@ -191,7 +191,7 @@ def run_command(*words):
 
 
 def test_the_commands(tmp_path, control):
-    file = tmp_path / "control.tape"
+    file = tmp_path / "control.rec"
     done = run_command("record", file, "--image", control, "--for", "0.02", "--send", "0.018:@")
     assert done.exit_code == 0, done.stderr
     done = run_command("replay", control, file, "--seed", "3")
@@ -207,17 +207,17 @@ def test_the_commands(tmp_path, control):
     assert "(control.asm:" in done.stdout
 
 
-def test_a_tape_says_which_firmware_and_which_sources_made_it(tmp_path):
-    file = tmp_path / "own.tape"
+def test_a_recording_says_which_firmware_and_which_sources_made_it(tmp_path):
+    file = tmp_path / "own.rec"
     done = run_command("record", file, "--for", "0.001")
     assert done.exit_code == 0, done.stderr
     content = json.loads(file.read_text())
     assert (content["made_by"], content["firmware"], content["revision"]) == ("firmware", firmware(), revision())
-    assert tape.load(file).firmware == firmware()
-    assert tape.load(file).revision == revision()
+    assert recording.load(file).firmware == firmware()
+    assert recording.load(file).revision == revision()
 
 
-def test_a_tape_of_an_image_says_what_the_image_says_of_itself(tmp_path):
+def test_a_recording_of_an_image_says_what_the_image_says_of_itself(tmp_path):
     marked = opened.look(demonstration.write(tmp_path)[0])
     assert opened.identity(marked) == f"{__version__} (a demonstration, for a virtual board alone)"
     said = []
@@ -225,7 +225,7 @@ def test_a_tape_of_an_image_says_what_the_image_says_of_itself(tmp_path):
         folder = tmp_path / amount
         folder.mkdir()
         source = changed_file(folder, "control", "control.asm", "SFR     ACC,#8", f"SFR     ACC,#{amount}")
-        image, file = linked_file(folder, "control", [source]), folder / "control.tape"
+        image, file = linked_file(folder, "control", [source]), folder / "control.rec"
         assert run_command("record", file, "--image", image, "--for", "0.001").exit_code == 0
         said.append(json.loads(file.read_text())["firmware"])
         assert said[-1] == opened.identity(opened.read(image))
@@ -233,14 +233,14 @@ def test_a_tape_of_an_image_says_what_the_image_says_of_itself(tmp_path):
     assert said[0] != said[1], "one instruction is another"
 
 
-def test_what_is_no_tape_is_said(tmp_path):
+def test_what_is_no_recording_is_said(tmp_path):
     file = tmp_path / "x"
-    for content in ("", "[]", "{}", '{"tape": 1}', '{"tape": 7}'):
+    for content in ("", "[]", "{}", '{"recording": 1}', '{"recording": 7}'):
         file.write_text(content)
-        with pytest.raises(InputError, match="tape"):
-            tape.load(file)
+        with pytest.raises(InputError, match="recording"):
+            recording.load(file)
     with pytest.raises(InputError, match="cannot be read"):
-        tape.load(tmp_path / "none")
+        recording.load(tmp_path / "none")
 
 
 def test_times_of_lines_are_checked(tmp_path):
@@ -250,7 +250,7 @@ def test_times_of_lines_are_checked(tmp_path):
 
 
 def test_registers_have_ti_s_names():
-    assert [tape.register(address) for address in (0x6809, 0x684A, 0x6940, 0x7101)] == [
+    assert [recording.register(address) for address in (0x6809, 0x684A, 0x6940, 0x7101)] == [
         "EPwm1.CMPA",
         "EPwm2.CMPB",
         "EPwm6.TBCTL",
@@ -258,11 +258,11 @@ def test_registers_have_ti_s_names():
     ]
 
 
-def test_a_tape_without_a_sample_compares_nothing_and_says_so(tmp_path):
+def test_a_recording_without_a_sample_compares_nothing_and_says_so(tmp_path):
     source = tmp_path / "silent.asm"
     source.write_text(" .org 0x3F7FF6\n LB start\n .org 0x3F4000\nstart: B start,UNC\n")
-    file, tape = str(linked_file(tmp_path, "silent", [source])), str(tmp_path / "silent.tape")
-    assert stillspin("image", "record", tape, "--image", file, "--for", "0.001").exit_code == 0
-    done = stillspin("image", "replay", file, tape)
+    file, recording = str(linked_file(tmp_path, "silent", [source])), str(tmp_path / "silent.rec")
+    assert stillspin("image", "record", recording, "--image", file, "--for", "0.001").exit_code == 0
+    done = stillspin("image", "replay", file, recording)
     assert done.exit_code == 1
     assert "nothing was compared: silent.out took 0 samples" in done.stdout

@@ -101,14 +101,14 @@ def storm(tmp_path):
     "command",
     [
         ("time", "STORM", "--for", "0.1"),
-        ("record", "TAPE", "--image", "STORM", "--for", "0.1"),
+        ("record", "RECORDING", "--image", "STORM", "--for", "0.1"),
         ("inject", "STORM", "--from", "stay", "--interrupt", "INT1.7", "--after", "0.1"),
     ],
     ids=lambda words: words[0],
 )
 def test_what_it_does_to_the_chip_is_not_said_without_the_cause(storm, tmp_path, command):
     """Trap after trap fills the stack, which grows into the registers until the board cannot go on."""
-    there = {"STORM": storm, "TAPE": str(tmp_path / "tape.npz")}
+    there = {"STORM": storm, "RECORDING": str(tmp_path / "recording.npz")}
     done = CliRunner().invoke(cli.app, ["image", *(there.get(word, word) for word in command)])
     assert done.exit_code == 1
     said = " ".join(f"{done.output} {done.exception}".split())

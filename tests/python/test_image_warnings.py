@@ -80,18 +80,18 @@ def ask(*arguments):
     return done.exit_code, [line for line in done.stdout.splitlines() if line.startswith("warning: ")]
 
 
-def commands(image, tape):
-    """Each with its exit status: these programs take no sample, so a tape of theirs compares nothing."""
+def commands(image, recording):
+    """Each with its exit status: these programs take no sample, so a recording of theirs compares nothing."""
     return (
         (("time", image, "--for", "0.001"), 0),
         (("trace", image, "--instructions", "5"), 0),
-        (("record", tape, "--image", image, "--for", "0.001"), 0),
-        (("replay", image, tape), 1),
+        (("record", recording, "--image", image, "--for", "0.001"), 0),
+        (("replay", image, recording), 1),
     )
 
 
 def test_an_access_to_what_is_not_modelled_is_said(image, tmp_path):
-    for command, status in commands(image(), str(tmp_path / "tape")):
+    for command, status in commands(image(), str(tmp_path / "recording")):
         ended, said = ask(*command)
         assert ended == status, command
         assert [line[: len(SAID)] for line in said] == [SAID], command
@@ -109,7 +109,7 @@ def test_interrupts_on_purpose_say_it_however_they_end(image, text, ends):
 
 
 def test_a_program_that_uses_what_there_is_is_not_warned_of(image, tmp_path):
-    for command, status in commands(image(READS_RAM), str(tmp_path / "tape")):
+    for command, status in commands(image(READS_RAM), str(tmp_path / "recording")):
         assert ask(*command) == (status, []), command
 
 
@@ -302,7 +302,7 @@ def test_code_of_the_boot_rom_runs_and_is_timed(image, tmp_path):
 
 
 def test_every_command_takes_it(image, rom, tmp_path):
-    for command, status in commands(image(), str(tmp_path / "tape")):
+    for command, status in commands(image(), str(tmp_path / "recording")):
         assert ask(*command, "--rom", rom[1][0]) == (status, []), command
 
 
@@ -331,7 +331,7 @@ def test_a_linked_file_without_words_there_is_refused(image):
         ("reproduce", "A10"),
         ("board",),
         ("hil", "A10"),
-        ("image", "record", "TAPE"),
+        ("image", "record", "RECORDING"),
     ],
     ids=" ".join,
 )

@@ -20,10 +20,10 @@ CALLS = [
     ("campaign", "-n", "1", *ALONE, "--motors"),
     ("type-test", *ALONE),
     ("image inject", "control.out", "--interrupt", "INT1.7", "--from", "step", "--motor"),
-    ("image record", "tape.json", "--for", "0.001", "--motor"),
-    ("image record", "tape.json", "--for", "0.001", "--image", "control.out", "--motor"),
-    ("image record", "tape.json", "--for", "0.001", "--scenario", "A18a", "--motor"),
-    ("image replay", "control.out", "tape.json", "--motor"),
+    ("image record", "recording.json", "--for", "0.001", "--motor"),
+    ("image record", "recording.json", "--for", "0.001", "--image", "control.out", "--motor"),
+    ("image record", "recording.json", "--for", "0.001", "--scenario", "A18a", "--motor"),
+    ("image replay", "control.out", "recording.json", "--motor"),
     ("image time", "control.out", "--for", "0.001", "--motor"),
     ("image time", "control.out", "A18a", "A10", "--motor"),
     ("image trace", "control.out", "--motor"),
@@ -62,7 +62,7 @@ def test_every_command_that_runs_a_motor_says_once_what_its_file_leaves_out(requ
         ask = stillspin
     elif name.startswith("image"):
         linked_file(tmp_path, "control")
-        stillspin("image", "record", "tape.json", "--image", "control.out", "--for", "0.001")
+        stillspin("image", "record", "recording.json", "--image", "control.out", "--for", "0.001")
         ask = stillspin
     else:
         ask = request.getfixturevalue("call")

@@ -147,12 +147,12 @@ def test_the_pages_that_the_client_names_are_in_the_wheel(client):
     assert all(path.is_file() and not path.is_relative_to(ROOT) for path in paths), paths
 
 
-def test_a_tape_is_played_into_a_board_without_the_virtual_drive(client, tmp_path):
-    tape = tmp_path / "a10.tape"
-    made = CliRunner().invoke(app, ["hil", "A10", "--check", "--port", "virtual", "--tape", str(tape)])
+def test_a_recording_is_played_into_a_board_without_the_virtual_drive(client, tmp_path):
+    recording = tmp_path / "a10.rec"
+    made = CliRunner().invoke(app, ["hil", "A10", "--check", "--port", "virtual", "--record", str(recording)])
     assert made.exit_code == 0, made.output
     with desk.board(tmp_path, "--speed", "0") as port:
-        said = client.run("stillspin", "hil", "--play", tape, "--port", port)
+        said = client.run("stillspin", "hil", "--play", recording, "--port", port)
     assert said.returncode == 0, said.stderr
     assert "A10 creep (its start): identical" in said.stdout
 

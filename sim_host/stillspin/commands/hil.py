@@ -22,9 +22,9 @@ from stillspin.exit_codes import ExitCode
 from stillspin.flash.files import read_boot_rom
 from stillspin.hil import Difference, boards, built, campaign, runs
 from stillspin.hil.boards import Board
+from stillspin.hil.recording import RecordingWriter
 from stillspin.hil.results import Results, Row, begun
 from stillspin.hil.runs import LoopRun
-from stillspin.hil.tape import TapeWriter
 from stillspin.hil.wish import Wish
 from stillspin.link import address
 from stillspin.link.errors import NoAnswerError
@@ -36,7 +36,7 @@ from stillspin.runs.workers import Where
 
 _VIRTUAL = "virtual"
 _WITH_PLAY = {"play", "port", "can", "where", "image", "rom", "file", "junit_file", "scenarios"}
-"""What means something where a tape is played: the board, and where the verdicts go."""
+"""What means something where a recording is played: the board, and where the verdicts go."""
 
 
 @with_campaign_options
@@ -78,13 +78,13 @@ def hil(
     ] = False,
     common: CampaignOptions,
     only: Annotated[list[str] | None, typer.Option("--run", help="Only this run of the scenario. Repeatable.")] = None,
-    tape: Annotated[
+    recording: Annotated[
         Path | None,
-        typer.Option("--tape", metavar="FILE", help="Keep what board and computer say for --play; runs take longer."),
+        typer.Option("--record", metavar="FILE", help="Keep what board and computer say for --play; runs take longer."),
     ] = None,
     play: Annotated[
         Path | None,
-        typer.Option("--play", metavar="FILE", help="A tape in the place of scenarios: needs no virtual drive."),
+        typer.Option("--play", metavar="FILE", help="A recording in the place of scenarios: needs no virtual drive."),
     ] = None,
 ) -> None:
     """Step a board through scenarios: this computer runs the plant, and compares every answer bit for bit.
@@ -100,12 +100,12 @@ def hil(
     if (play is None) != bool(scenarios):
         raise InputError("name scenarios, such as A10, or give --play FILE: one of the two")
     if play:
-        _refuse_what_a_tape_has(context)
+        _refuse_what_a_recording_has(context)
     if resume and not file:
         raise InputError("--resume: leaves out what a file of results has; name it with --json FILE")
     board = _executing(context, image, rom, port or can or where) if image else _address(port, can, where)
     is_virtual = board.partition(":")[0] == _VIRTUAL
-    if is_virtual and (tape or play):  # what a tape takes is said by one board
+    if is_virtual and (recording or play):  # what a recording takes is said by one board
         board = context.with_resource(Board(boards.memory())).wait(_kind(board))
         is_virtual = False
     if play:
@@ -135,12 +135,12 @@ def hil(
     left = {number for number, run in enumerate(everything) if not (resume and _is_done(results, run, kind, of))}
     chosen = [everything[number] for number in runs.broad(everything) if number in left]
     skipped = [begun(run, kind, of) for number, run in enumerate(everything) if number not in left]
-    taken = context.with_resource(TapeWriter(tape, len(chosen))) if tape else None
+    taken = context.with_resource(RecordingWriter(recording, len(chosen))) if recording else None
     rows = _on_virtual(chosen, kind, of, common.where) if is_virtual else _on_one(chosen, board, of, taken)
     _tell_all(rows, skipped, results, common.junit_file)
 
 
-def _refuse_what_a_tape_has(context: typer.Context) -> None:
+def _refuse_what_a_recording_has(context: typer.Context) -> None:
     """Options that say which runs there are, of what drive, and who does them."""
     given = [
         option.opts[0]
@@ -148,13 +148,13 @@ def _refuse_what_a_tape_has(context: typer.Context) -> None:
         if not is_default(context, option.name or "") and option.name not in _WITH_PLAY
     ]
     if given:
-        raise InputError(f"{', '.join(given)}: no meaning with --play, which asks one board what is on the tape")
+        raise InputError(f"{', '.join(given)}: no meaning with --play, which asks one board what is in the recording")
 
 
-def _play(tape: Path, board: str, results: Results, junit_file: Path | None) -> None:
-    """Everything on a tape, on a board."""
+def _play(recording: Path, board: str, results: Results, junit_file: Path | None) -> None:
+    """Everything in a recording, on a board."""
     with PhaseBar(Console(stderr=True)) as bar:
-        rows = campaign.played(tape, board, lambda run: partial(bar.show, phase=f"{run.scenario} {run.run}"))
+        rows = campaign.played(recording, board, lambda run: partial(bar.show, phase=f"{run.scenario} {run.run}"))
         _tell_all(rows, [], results, junit_file)
 
 
@@ -224,13 +224,13 @@ def _is_done(results: Results, run: LoopRun, kind: str, of: str) -> bool:
     return row is not None and row.identical and row.revision == of
 
 
-def _on_one(chosen: Sequence[LoopRun], board: str, of: str, tape: TapeWriter | None) -> Iterator[Row]:
+def _on_one(chosen: Sequence[LoopRun], board: str, of: str, recording: RecordingWriter | None) -> Iterator[Row]:
     with PhaseBar(Console(stderr=True)) as bar:
 
         def progress(run: LoopRun) -> Progress:
             return partial(bar.show, phase=f"{run.scenario} {run.name}")
 
-        yield from campaign.on_one(chosen, board, of, progress, tape)
+        yield from campaign.on_one(chosen, board, of, progress, recording)
 
 
 def _on_virtual(chosen: Sequence[LoopRun], kind: str, of: str, where: Where) -> Iterator[Row]:

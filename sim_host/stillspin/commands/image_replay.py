@@ -20,9 +20,9 @@ from stillspin.drive.own import firmware
 from stillspin.errors import CampaignError, InputError
 from stillspin.exit_codes import ExitCode
 from stillspin.image import opened
-from stillspin.image import tape as tapes
+from stillspin.image import recording as recordings
 from stillspin.image.opened import Image
-from stillspin.image.tape import Difference, Octets, Tape
+from stillspin.image.recording import Difference, Octets, Recording
 from stillspin.options import (
     NEEDS_IMAGE,
     ImageArgument,
@@ -80,21 +80,21 @@ def _job(identifier: str, only: str | None, image: Image | None, where: tuple[st
     return jobs[name]
 
 
-def _of_scenario(job: Job) -> Tape:
+def _of_scenario(job: Job) -> Recording:
     with PhaseBar(Console(stderr=True)) as bar:
-        tape, played = tapes.of_run(
+        recording, played = recordings.of_run(
             core.load(), job, job.image, partial(bar.show, phase=f"{job.scenario} {job.run.name}")
         )
     for words in played.notes:
         print(words)
-    if tape is None or not played.completed:
+    if recording is None or not played.completed:
         raise CampaignError(f"{job.scenario}, run {job.run.name}: broken off, nothing is recorded: {played.reason}")
-    return tape
+    return recording
 
 
 def record(
     *,
-    out: Annotated[Path, typer.Argument(metavar="TAPE", help="Where to write what was recorded.")],
+    out: Annotated[Path, typer.Argument(metavar="RECORDING", help="Where to write what was recorded.")],
     file: Annotated[
         Path | None,
         typer.Option(
@@ -145,25 +145,25 @@ def record(
         if octets:
             raise InputError("--send: a scenario says itself what is sent; leave it out")
         job = _job(scenario, only, image, (profile_name, motor, seed))
-        tape = _of_scenario(job if seconds is None else replace(job, run=replace(job.run, duration=seconds)))
+        recording = _of_scenario(job if seconds is None else replace(job, run=replace(job.run, duration=seconds)))
     else:
         if only:
             raise InputError(f"--run {only}: is one of a scenario; name that with --scenario")
         name = motor or resources.DEFAULT_MOTOR
         board = opened.power_on(image, profile_name, name, seed) if image else _firmware(profile_name, name, seed)
         with opened.closing(board, image) if image else closing(board):
-            tape = tapes.play(board, _USUAL if seconds is None else seconds, octets)
+            recording = recordings.play(board, _USUAL if seconds is None else seconds, octets)
             if image:
                 opened.say(board, image)
     made_by, says = (image.file.name, opened.identity(image)) if image else ("firmware", firmware())
-    tapes.save(replace(tape, made_by=made_by, firmware=says, revision=revision()), out)
-    print(f"{out}: {counted(len(tape.samples), 'sample')}, {counted(len(tape.writes), 'write')} to the ePWM")
+    recordings.save(replace(recording, made_by=made_by, firmware=says, revision=revision()), out)
+    print(f"{out}: {counted(len(recording.samples), 'sample')}, {counted(len(recording.writes), 'write')} to the ePWM")
 
 
 def _write(write: tuple[int, int, int] | None) -> str:
     if write is None:
         return "no write any more"
-    return f"step {write[0]}, {tapes.register(write[1])} = 0x{write[2]:04X}"
+    return f"step {write[0]}, {recordings.register(write[1])} = 0x{write[2]:04X}"
 
 
 def _say(difference: Difference, image: Image) -> None:
@@ -176,7 +176,7 @@ def _say(difference: Difference, image: Image) -> None:
 def replay(
     *,
     file: ImageArgument,
-    tape_file: Annotated[Path, typer.Argument(metavar="TAPE", help="What `image record` has written.")],
+    recording_file: Annotated[Path, typer.Argument(metavar="RECORDING", help="What `image record` has written.")],
     rom: RomOption = None,
     profile_name: ProfileOption = "bench",
     motor: MotorOption = resources.DEFAULT_MOTOR,
@@ -185,25 +185,26 @@ def replay(
     """Give an image the inputs of a recorded run, and compare what it has the gates do, bit for bit.
 
     Compared is every write to the timers of the gates' pulses (ePWM). Exit status 4 when one differs: the first is
-    named by step, register and source line; 1 when the tape has nothing to compare.
+    named by step, register and source line; 1 when the recording has nothing to compare.
     """
-    image, tape = opened.read(file, rom), tapes.load(tape_file)
+    image, recording = opened.read(file, rom), recordings.load(recording_file)
     board = opened.power_on(image, profile_name, motor, seed)
     with opened.closing(board, image):
-        tapes.play(board, tape.seconds, tape.octets, tape)
-        difference = tapes.compare(tape, board)
-        steps, writes = len(board.taped()[0]), len(board.taped()[1])
+        recordings.play(board, recording.seconds, recording.octets, recording)
+        difference = recordings.compare(recording, board)
+        steps, writes = len(board.recorded()[0]), len(board.recorded()[1])
         opened.say(board, image)
     if difference:
         _say(difference, image)
         raise typer.Exit(ExitCode.DIFFERS)
-    if not any(step < len(tape.samples) for step, *_ in tape.writes):
+    if not any(step < len(recording.samples) for step, *_ in recording.writes):
         print(
-            f"{file.name}: nothing was compared: {tape.made_by} took {counted(len(tape.samples), 'sample')} of the "
-            "converter and wrote nothing to the ePWM before the last; record for longer (--for)"
+            f"{file.name}: nothing was compared: {recording.made_by} took "
+            f"{counted(len(recording.samples), 'sample')} of the converter and wrote nothing to the ePWM before the "
+            "last; record for longer (--for)"
         )
         raise typer.Exit(ExitCode.SHORT)
     print(
-        f"{file.name}: the same {counted(min(writes, len(tape.writes)), 'write')} to the ePWM as {tape.made_by} in "
-        f"{counted(min(steps, len(tape.samples)), 'step')}"
+        f"{file.name}: the same {counted(min(writes, len(recording.writes)), 'write')} to the ePWM as "
+        f"{recording.made_by} in {counted(min(steps, len(recording.samples)), 'step')}"
     )

@@ -13,7 +13,7 @@ from stillspin.drive.own import virtual_ask
 from stillspin.drive.requester import Requester
 from stillspin.drive.table import Parameter, Signal, Table
 from stillspin.hil.kept_board import TIMEOUT
-from stillspin.hil.tape import Heading
+from stillspin.hil.recording import Heading
 from stillspin.link.errors import DifferentError
 
 _SHOWN = 8
@@ -68,12 +68,12 @@ def check_board(ask: Ask) -> Identity:
     return theirs
 
 
-def check_taped(ask: Ask, tape: Heading) -> Identity:
-    """Compare a board's version, edition, board file and table with those of the drive on a tape.
+def check_recorded(ask: Ask, recording: Heading) -> Identity:
+    """Compare a board's version, edition, board file and table with those of the drive in a recording.
 
     Args:
         ask: of the board.
-        tape: of one of its runs.
+        recording: of one of its runs.
 
     Returns:
         What the board says of itself.
@@ -83,16 +83,18 @@ def check_taped(ask: Ask, tape: Heading) -> Identity:
     """
     theirs = describe.identity(ask)
     pairs = {
-        "version": (theirs.version, tape.version),
-        "edition": (theirs.edition, tape.edition),
-        "board file": (theirs.board, tape.board),
-        "table": (f"{theirs.crc:08x}", f"{tape.crc:08x}"),
+        "version": (theirs.version, recording.version),
+        "edition": (theirs.edition, recording.edition),
+        "board file": (theirs.board, recording.board),
+        "table": (f"{theirs.crc:08x}", f"{recording.crc:08x}"),
     }
-    found = [f"{what} {one} on the board, {other} on the tape" for what, (one, other) in pairs.items() if one != other]
+    found = [
+        f"{what} {one} on the board, {other} in the recording" for what, (one, other) in pairs.items() if one != other
+    ]
     if found:
         raise DifferentError(
-            f"the board is not built like the drive on the tape: {'; '.join(found)}. No step was done. Use a tape that "
-            "was made with the sources of its image"
+            f"the board is not built like the drive in the recording: {'; '.join(found)}. No step was done. Use a "
+            "recording that was made with the sources of its image"
         )
     return theirs
 

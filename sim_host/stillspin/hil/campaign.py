@@ -16,12 +16,12 @@ from stillspin.drive.describe import Identity
 from stillspin.drive.requester import Requester
 from stillspin.errors import InputError
 from stillspin.hil import boards
-from stillspin.hil.built import check_board, check_taped
+from stillspin.hil.built import check_board, check_recorded
 from stillspin.hil.kept_board import TIMEOUT, kept_board
 from stillspin.hil.loop import Loop
+from stillspin.hil.recording import Heading, RecordingWriter, recorded
 from stillspin.hil.results import Row, begun, ended
 from stillspin.hil.runs import LoopRun
-from stillspin.hil.tape import Heading, TapeWriter, recorded
 from stillspin.link import address
 from stillspin.link.errors import DriveError, RefusedError
 from stillspin.runs.reporting import report
@@ -32,7 +32,7 @@ Note = Callable[[bytes, bytes], None]
 
 
 def on_one(
-    chosen: Sequence[LoopRun], where: str, revision: str, progress: ProgressOf, tape: TapeWriter | None = None
+    chosen: Sequence[LoopRun], where: str, revision: str, progress: ProgressOf, recording: RecordingWriter | None = None
 ) -> Iterator[Row]:
     """The runs one after the other; what is lost with the board ends them behind a row that says so.
 
@@ -41,19 +41,19 @@ def on_one(
         where: address of the board.
         revision: of the sources, for the rows.
         progress: of a run.
-        tape: gets those that are identical.
+        recording: gets those that are identical.
     """
     native = core.load()
     kind = address.parse(where).kind
-    with _loop(where, tape.note if tape else None) as loop:
+    with _loop(where, recording.note if recording else None) as loop:
         identity = check_board(loop.ask)
         for run in chosen:
-            if tape:
-                tape.begin()
+            if recording:
+                recording.begin()
             row = replace(begun(run, kind, revision), firmware=identity.text)
             row, goes_on = _step_through(loop, run, row, native, progress(run))
-            if tape and row.identical:
-                tape.keep(_heading(row, identity))
+            if recording and row.identical:
+                recording.keep(_heading(row, identity))
             yield row
             if not goes_on:
                 return
@@ -65,19 +65,19 @@ def _heading(row: Row, of: Identity) -> Heading:
 
 
 def played(file: Path, where: str, progress: Callable[[Heading], Progress]) -> Iterator[Row]:
-    """The runs of a tape one after the other; what is lost with the board ends them behind a row that says so.
+    """The runs of a recording one after the other; what is lost with the board ends them behind a row that says so.
 
     Raises:
-        InputError: it is no tape.
+        InputError: it is no recording.
         DifferentError: the board is not built like the drive on it.
     """
     kind = address.parse(where).kind
     runs = recorded(file)
     if (first := next(runs, None)) is None:
-        raise InputError(f"--play {file}: there is no run on this tape")
+        raise InputError(f"--play {file}: there is no run in this recording")
     with _loop(where) as loop:
         for heading, said in chain([first], runs):
-            firmware = check_taped(loop.ask, heading).text
+            firmware = check_recorded(loop.ask, heading).text
             run = (heading.scenario, heading.run, heading.profile, heading.whole)
             row = Row(*run, kind, heading.revision, firmware=firmware)
             try:

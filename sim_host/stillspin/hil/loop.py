@@ -16,7 +16,7 @@ from stillspin.drive.protocol import Request
 from stillspin.drive.requester import REASONS, Requester
 from stillspin.errors import CampaignError
 from stillspin.hil import told
-from stillspin.hil.tape import Pair
+from stillspin.hil.recording import Pair
 from stillspin.link.errors import DriveError, LinkError, RefusedError
 
 _SIGNALS_AT_ONCE = 16
@@ -121,7 +121,7 @@ class Loop:
         return LoopResult(loop.steps, seconds, *log.digests, difference, "" if difference else reason)
 
     def play(self, said: Sequence[Pair], progress: Progress | None = None) -> LoopResult:
-        """One run as it is on a tape, up to the first answer that is another one.
+        """One run as it is in a recording, up to the first answer that is another one.
 
         Raises:
             CampaignError: the board cannot be put into the loop.
@@ -144,8 +144,8 @@ class Loop:
             if progress and number % _TOLD_EVERY == 0:
                 progress(number / len(said))
         seconds = time.perf_counter() - begin
-        board, tape = (hash_.hexdigest() for hash_ in hashes)
-        return LoopResult(steps, seconds, board, tape, difference, "")
+        board, recording = (hash_.hexdigest() for hash_ in hashes)
+        return LoopResult(steps, seconds, board, recording, difference, "")
 
     def ask(self, kind: Request, body: bytes = b"") -> bytes:
         """Anything of the board that may be asked twice, outside of a run."""

@@ -33,12 +33,12 @@ def difference(board: Sequence[int], native: Sequence[int]) -> str | None:
     return None
 
 
-def answered(request: str, board: bytes, tape: bytes) -> str:
+def answered(request: str, board: bytes, recording: bytes) -> str:
     """The first octet in which two answers differ, in words; status and body."""
-    for place, (one, other) in enumerate(zip_longest(board, tape)):
+    for place, (one, other) in enumerate(zip_longest(board, recording)):
         if one != other:
             here, there = ("nothing" if octet is None else f"0x{octet:02x}" for octet in (one, other))
-            return f"answer to {request}, octet {place}: {here} on the board, {there} on the tape"
+            return f"answer to {request}, octet {place}: {here} on the board, {there} in the recording"
     return "the answers are the same"
 
 

@@ -32,7 +32,7 @@ class SerialClient:
     Attributes:
         period: how many have passed since the board was switched on.
         refused: what the drive said no to of what it was told.
-        sent: when what was sent, as a tape has it.
+        sent: when what was sent, as a recording has it.
     """
 
     def __init__(self, board: NativeBoard, passed: Callable[[], None], event: Callable[[Record], None]) -> None:

@@ -4,8 +4,8 @@
 // each with its step and how often the input had been looked at in that step before: another run that looks in the same
 // order sees the same, whatever its time is. Octets of the serial line are not here: they are sent at a time.
 
-#ifndef STILLSPIN_SIM_HOST_CHIP_TAPE_HPP
-#define STILLSPIN_SIM_HOST_CHIP_TAPE_HPP
+#ifndef STILLSPIN_SIM_HOST_CHIP_RECORDING_HPP
+#define STILLSPIN_SIM_HOST_CHIP_RECORDING_HPP
 
 #include <array>
 #include <cstddef>
@@ -16,7 +16,7 @@
 namespace stillspin::chip {
 
 /// One input beside the converter.
-class TapeInput {
+class RecordedInput {
  public:
   struct Change {
     std::uint64_t samples;  // that the converter had taken by then
@@ -50,7 +50,7 @@ class TapeInput {
   std::uint64_t step_ = 0, looks_ = 0;
 };
 
-struct Tape {
+struct Recording {
   /// A write to a register of the ePWM modules.
   struct Write {
     std::uint64_t samples;  // that the converter had taken by then
@@ -69,7 +69,7 @@ struct Tape {
   /// Levels of pins 0 to 15, 16 to 31 and 32 to 34 as the program reads them, trip inputs that are active, edges of the
   /// encoder.
   enum Input { kPins, kTrips = kPins + 3, kEncoder, kInputs };
-  std::array<TapeInput, kInputs> inputs;
+  std::array<RecordedInput, kInputs> inputs;
 
   std::uint16_t sample(std::uint16_t seen) {
     const std::uint16_t code = samples.size() < given.size() ? given[samples.size()] : seen;

@@ -1,10 +1,10 @@
 """What one run was told from outside given to another, and what both write to the ePWM compared, bit for bit.
 
-The run that is recorded is that of an image or of the firmware that is compiled for this computer. A tape has the codes
-in the order of the converter's samples; the levels of pins that the program read, the trip inputs and the encoder's
-edges by step; the octets that came at the serial port with their times; and every write to a register of the ePWM in
-order. What the program makes of equal inputs has to be equal: the first write that is not is named by its step, its
-register and the line of the image that made it. A step is a sample of the converter.
+The run that is recorded is that of an image or of the firmware that is compiled for this computer. A recording has the
+codes in the order of the converter's samples; the levels of pins that the program read, the trip inputs and the
+encoder's edges by step; the octets that came at the serial port with their times; and every write to a register of the
+ePWM in order. What the program makes of equal inputs has to be equal: the first write that is not is named by its step,
+its register and the line of the image that made it. A step is a sample of the converter.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ Octets = tuple[float, str]
 
 
 @dataclass(frozen=True)
-class Tape:
+class Recording:
     """Of a run from power-on."""
 
     seconds: float
@@ -77,7 +77,7 @@ def register(address: int) -> str:
     return f"EPwm{module + 1}.{_REGISTERS.get(offset, f'0x{offset:02X}')}"
 
 
-def play(board: NativeBoard, seconds: float, octets: Sequence[Octets], given: Tape | None = None) -> Tape:
+def play(board: NativeBoard, seconds: float, octets: Sequence[Octets], given: Recording | None = None) -> Recording:
     """Let a board that has just been switched on run, and record it.
 
     Args:
@@ -90,7 +90,7 @@ def play(board: NativeBoard, seconds: float, octets: Sequence[Octets], given: Ta
     Raises:
         CampaignError: the chip cannot go on.
     """
-    board.tape(given.samples if given else [], given.inputs if given else [])
+    board.record(given.samples if given else [], given.inputs if given else [])
     at = 0.0
     for when, text in sorted(octets):
         if when > seconds:
@@ -99,16 +99,16 @@ def play(board: NativeBoard, seconds: float, octets: Sequence[Octets], given: Ta
         at = when
         board.serial_write(bytes.fromhex(text))
     opened.advance(board, seconds - at)
-    if given and len(board.taped()[0]) < len(given.samples):
+    if given and len(board.recorded()[0]) < len(given.samples):
         opened.advance(board, seconds)
-    samples, writes, inputs = board.taped()
-    return Tape(seconds, samples, [write[:3] for write in writes], list(octets), "", inputs)
+    samples, writes, inputs = board.recorded()
+    return Recording(seconds, samples, [write[:3] for write in writes], list(octets), "", inputs)
 
 
 def of_run(
     native: NativeCore, job: Wanted, image: Image | None, progress: Progress | None
-) -> tuple[Tape | None, Played]:
-    """Let a board run a scenario, told over its serial port, and record it from power-on; no tape where it never began.
+) -> tuple[Recording | None, Played]:
+    """Let a board run a scenario, told over its serial port, and record it from power-on; nothing where it never began.
 
     Args:
         native: the native module.
@@ -121,48 +121,48 @@ def of_run(
         board = opened.power_plant(native, image, job.plant, job.seed)
     else:
         board = native.VirtualBoard(plant=job.plant, parameters={}, seed=job.seed)
-    board.tape([])
-    looks = (lambda _: None, lambda b: made.append((b.now / TICKS_PER_SECOND, *b.taped())))
+    board.record([])
+    looks = (lambda _: None, lambda b: made.append((b.now / TICKS_PER_SECOND, *b.recorded())))
     played = closed_loop.play_on(
         board, job, progress, [str(row["name"]) for row in native.signals()], looks, image=image
     )
     if not made:
         return None, played
     seconds, samples, writes, inputs = made[0]
-    return Tape(seconds, samples, [write[:3] for write in writes], played.sent, "", inputs), played
+    return Recording(seconds, samples, [write[:3] for write in writes], played.sent, "", inputs), played
 
 
-def compare(tape: Tape, board: NativeBoard) -> Difference | None:
-    """Hold what a board has written, which was given the tape, against the tape.
+def compare(recording: Recording, board: NativeBoard) -> Difference | None:
+    """Hold what a board has written, which was given the recording, against the recording.
 
-    What came behind the tape's last sample is not compared. Where the board has taken fewer, the writes of the others
-    are missing.
+    What came behind the recording's last sample is not compared. Where the board has taken fewer, the writes of the
+    others are missing.
     """
-    end = len(tape.samples)
-    expected = [write for write in tape.writes if write[0] < end]
-    found = [write for write in board.taped()[1] if write[0] < end]
+    end = len(recording.samples)
+    expected = [write for write in recording.writes if write[0] < end]
+    found = [write for write in board.recorded()[1] if write[0] < end]
     for index, (one, other) in enumerate(zip_longest(expected, found)):
         if other is None or one != other[:3]:
             return Difference(index, one, other[:3] if other else None, other[3] if other else 0)
     return None
 
 
-def save(tape: Tape, file: Path) -> None:
+def save(recording: Recording, file: Path) -> None:
     """As JSON.
 
     Raises:
         InputError: it cannot be written.
     """
     content = {
-        "tape": _FORMAT,
-        "made_by": tape.made_by,
-        "firmware": tape.firmware,
-        "revision": tape.revision,
-        "seconds": tape.seconds,
-        "octets": tape.octets,
-        "samples": tape.samples,
-        "writes": tape.writes,
-        "inputs": tape.inputs,
+        "recording": _FORMAT,
+        "made_by": recording.made_by,
+        "firmware": recording.firmware,
+        "revision": recording.revision,
+        "seconds": recording.seconds,
+        "octets": recording.octets,
+        "samples": recording.samples,
+        "writes": recording.writes,
+        "inputs": recording.inputs,
     }
     try:
         file.write_text(json.dumps(content, separators=(",", ":")) + "\n", encoding="utf-8")
@@ -170,17 +170,17 @@ def save(tape: Tape, file: Path) -> None:
         raise InputError(f"{file}: cannot be written ({error.strerror})") from error
 
 
-def load(file: Path) -> Tape:
+def load(file: Path) -> Recording:
     """The same back.
 
     Raises:
-        InputError: it cannot be read, or is no tape.
+        InputError: it cannot be read, or is no recording.
     """
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
-        if content["tape"] != _FORMAT:
-            raise InputError(f"{file}: is a tape of format {content['tape']}, not {_FORMAT}; record it again")
-        return Tape(
+        if content["recording"] != _FORMAT:
+            raise InputError(f"{file}: is a recording of format {content['recording']}, not {_FORMAT}; record it again")
+        return Recording(
             float(content["seconds"]),
             [int(code) for code in content["samples"]],
             [(int(step), int(address), int(value)) for step, address, value in content["writes"]],
@@ -193,4 +193,4 @@ def load(file: Path) -> Tape:
     except OSError as error:
         raise InputError(f"{file}: cannot be read ({error.strerror})") from error
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise InputError(f"{file}: is no tape of `image record` ({error})") from error
+        raise InputError(f"{file}: is no recording of `image record` ({error})") from error

@@ -1,7 +1,7 @@
 """Runs in the loop as a file: what a board was asked, and what it answered, for computers without the virtual drive.
 
-A tape is compressed by gzip. Behind its first line comes run after run: a line of JSON (`Heading`), then requests and
-answers by turns, two octets of length and as many octets each, and an empty request at the end.
+A recording is compressed by gzip. Behind its first line comes run after run: a line of JSON (`Heading`), then requests
+and answers by turns, two octets of length and as many octets each, and an empty request at the end.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from stillspin.errors import InputError
 
 Pair = tuple[bytes, bytes]
 """A request and its answer, kind and status in front."""
-_FIRST = b"stillspin tape 1\n"
+_FIRST = b"stillspin recording 1\n"
 _LENGTH = struct.Struct("<H")
 
 
@@ -50,14 +50,14 @@ class Heading:
     crc: int
 
 
-class TapeWriter:
+class RecordingWriter:
     """Takes what is said in a run, and keeps it when the run was good.
 
     It writes beside the file that is meant, which gets its new content when every run is there.
     """
 
     def __init__(self, file: Path, runs: int) -> None:
-        """Begin a tape of so many runs.
+        """Begin a recording of so many runs.
 
         Raises:
             InputError: it cannot be written.
@@ -78,7 +78,7 @@ class TapeWriter:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
-        """The tape has its name; where runs are missing, one of its own, and no name where there are none."""
+        """The recording has its name; where runs are missing, one of its own, and no name where there are none."""
         beside, is_whole = Path(self._raw.name), self._kept == self._runs
         name = self._name if is_whole else self._name.with_name(f"{self._name.name}.part")
         try:
@@ -93,7 +93,7 @@ class TapeWriter:
         if not self._kept or not is_whole:
             there = f", in {name}" if self._kept else ""
             words = f"{self._kept} of {counted(self._runs, 'run')} can be kept{there}"
-            print(f"--tape {self._name}: not written; {words}", file=sys.stderr)
+            print(f"--record {self._name}: not written; {words}", file=sys.stderr)
 
     def begin(self) -> None:
         """A run; what was said in one that was not kept is forgotten."""
@@ -104,7 +104,7 @@ class TapeWriter:
         self._said.append((request, answer))
 
     def keep(self, heading: Heading) -> None:
-        """The run belongs on the tape.
+        """The run belongs into the recording.
 
         Raises:
             InputError: it cannot be written.
@@ -122,40 +122,40 @@ class TapeWriter:
         try:
             yield
         except OSError as error:
-            raise InputError(f"--tape {self._name}: cannot be written ({error.strerror})") from error
+            raise InputError(f"--record {self._name}: cannot be written ({error.strerror})") from error
 
 
 def recorded(file: Path) -> Iterator[tuple[Heading, list[Pair]]]:
-    """The runs of a tape.
+    """The runs of a recording.
 
     Raises:
         InputError: it cannot be read, or is none.
     """
     try:
-        with gzip.open(file, "rb") as tape:
-            if tape.readline(len(_FIRST)) != _FIRST:
+        with gzip.open(file, "rb") as recording:
+            if recording.readline(len(_FIRST)) != _FIRST:
                 raise ValueError
-            while line := tape.readline():
-                yield Heading(**json.loads(line)), list(_pairs(tape))
+            while line := recording.readline():
+                yield Heading(**json.loads(line)), list(_pairs(recording))
     except (EOFError, ValueError, TypeError, zlib.error, gzip.BadGzipFile) as error:
         raise InputError(
-            f"--play {file}: is no whole tape; `stillspin hil ID --port virtual --tape FILE` makes one"
+            f"--play {file}: is no whole recording; `stillspin hil ID --port virtual --record FILE` makes one"
         ) from error
     except OSError as error:
         raise InputError(f"--play {file}: cannot be read ({error.strerror})") from error
 
 
-def _pairs(tape: gzip.GzipFile) -> Iterator[Pair]:
-    while request := _octets(tape):
-        yield request, _octets(tape)
+def _pairs(recording: gzip.GzipFile) -> Iterator[Pair]:
+    while request := _octets(recording):
+        yield request, _octets(recording)
 
 
-def _octets(tape: gzip.GzipFile) -> bytes:
-    length = tape.read(_LENGTH.size)
+def _octets(recording: gzip.GzipFile) -> bytes:
+    length = recording.read(_LENGTH.size)
     if len(length) < _LENGTH.size:
         raise EOFError
     count = _LENGTH.unpack(length)[0]
-    octets = tape.read(count)
+    octets = recording.read(count)
     if len(octets) < count:
         raise EOFError
     return octets
