@@ -20,21 +20,17 @@ static uint16_t filter_shift(const if_start_config_t* c, const machine_model_t* 
   return n;
 }
 
-bool if_start_design(if_start_config_t* c, const machine_model_t* m, const if_start_parameters_t* p) {
-  c->current_q20 = p->current_q20;
-  c->align_periods = p->align_periods;
-  c->step_bpp = q_max(p->step_bpp, 1);
-  c->speed_bpp = p->speed_bpp;
-  c->wait_periods = p->wait_periods;
+bool if_start_design(if_start_config_t* c, const machine_model_t* m) {
+  c->step_bpp = q_max(c->step_bpp, 1);
   // Acceleration at a right angle, bpp per period: (w0 T)^2 in units of 2 pi / 2^32.
-  const int32_t torque_q16 = qc_mul(m->torque_q24, p->current_q20, 28);
+  const int32_t torque_q16 = qc_mul(m->torque_q24, c->current_q20, 28);
   const int32_t accel_bpp = qc_mul_sat(torque_q16, m->accel_q12, 28);
   c->damping_periods = (int32_t)q_sqrt64((uint64_t)(TURNS_Q32_PER_RAD / q_max(accel_bpp, 1)));
   c->filter_shift = filter_shift(c, m);
   // w = v / lambda: rad per period of v over lambda/T, as binary angle.
   c->per_emf_q4 = q_div(TURNS_Q32_PER_RAD, m->emf_q16, 20);
   c->resistance_q24 = m->nominal_rs_q24;
-  c->least_q16 = q_div(p->speed_bpp / 8, c->per_emf_q4, 20);
+  c->least_q16 = q_div(c->speed_bpp / 8, c->per_emf_q4, 20);
   return q_in_range(c->damping_periods, 10, 10000);
 }
 
@@ -63,6 +59,10 @@ void if_start_begin_turning(if_start_t* s, const if_start_config_t* c, uint32_t 
   s->mean_bpp = speed_bpp;
 }
 
+void if_start_turn_to(if_start_t* s, const if_start_config_t* c, int32_t target_bpp) {
+  s->end_bpp = q_limit(target_bpp, c->speed_bpp);
+}
+
 // At rest it points a quarter turn behind first: a rotor that is half a turn away from one of them is not from the
 // other.
 static void step_vector(if_start_t* s, const if_start_config_t* c) {
@@ -80,7 +80,7 @@ static void step_vector(if_start_t* s, const if_start_config_t* c) {
 // The EMF's own mean direction: along it is, to first order, the rotor's speed alone, whatever the lag. Near standstill
 // it is that of no lag. A vector that begins to turn the other way turns the EMF over.
 static void renew_direction(if_start_t* s, const if_start_config_t* c) {
-  const int32_t sign = (s->speed_bpp < 0) ? -1 : 1;
+  const int16_t sign = (s->speed_bpp < 0) ? -1 : 1;
   if (sign != s->sign) {
     s->mean_q16.d = -s->mean_q16.d;
     s->mean_q16.q = -s->mean_q16.q;
@@ -121,7 +121,7 @@ if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t 
   if (!if_start_is_up(s, c)) return (s->waited < -AWAY_MS) ? IF_START_FAILED : IF_START_PENDING;
   const bool near = qc_abs_sat(angle_diff_bam(s->vector_bam, seen_bam)) < ANGLE_80_DEG &&
                     qc_abs_sat(qc_sub_sat(seen_bpp, s->speed_bpp)) < c->speed_bpp / 4;
-  s->agreed = near ? s->agreed + 1 : 0;
+  s->agreed = near ? (int16_t)(s->agreed + 1) : 0;
   if (s->agreed >= IF_START_AGREED) return IF_START_TAKEN_OVER;
   s->waited++;
   // Two returns, so that the range of what is waited stays known where the step is read (tests/prove/control.c).

@@ -39,31 +39,29 @@ typedef struct {
   int32_t least_q16;  // mean EMF, V, below which its direction is not looked at
 } if_start_config_t;
 
-typedef struct {
-  int32_t current_q20, align_periods, step_bpp, speed_bpp, wait_periods;
-} if_start_parameters_t;
-
 typedef enum { IF_START_PENDING = 0, IF_START_TAKEN_OVER = 1, IF_START_FAILED = 2 } if_start_result_t;
 
 typedef struct {
-  int32_t tick;            // periods since the beginning, at most those at rest
-  int32_t speed_bpp;       // of the vector
-  int32_t end_bpp;         // that it is to have, with its sign: up to that of the configuration
-  uint32_t vector_bam;     // its angle without the damping
-  uint32_t angle_bam;      // of the frame to control in
-  int32_t current_q20;     // i_d to ask for
-  dq_t mean_q16;           // EMF, V, in the frame
-  dq_t per_emf_q4;         // bpp of the rotor per V of EMF along and across
-  int32_t drop_q16;        // at the resistance, V
-  int32_t rotor_bpp;       // speed of the rotor by the EMF, filtered
-  int32_t mean_bpp;        // its mean
-  int32_t agreed, waited;  // periods; below 0: ms in which the EMF has been too large
-  int32_t sign;            // of the speed that the mean belongs to
-  bool took_over;          // a rotor that turned already
+  int32_t tick;         // periods since the beginning, at most those at rest
+  int32_t speed_bpp;    // of the vector
+  int32_t end_bpp;      // that it is to have, with its sign: up to that of the configuration
+  uint32_t vector_bam;  // its angle without the damping
+  uint32_t angle_bam;   // of the frame to control in
+  int32_t current_q20;  // i_d to ask for
+  dq_t mean_q16;        // EMF, V, in the frame
+  dq_t per_emf_q4;      // bpp of the rotor per V of EMF along and across
+  int32_t drop_q16;     // at the resistance, V
+  int32_t rotor_bpp;    // speed of the rotor by the EMF, filtered
+  int32_t mean_bpp;     // its mean
+  int32_t waited;       // periods; below 0: ms in which the EMF has been too large
+  int16_t agreed;       // periods
+  int16_t sign;         // of the speed that the mean belongs to
+  bool took_over;       // a rotor that turned already
 } if_start_t;
 
-/// Derives damping and speed from the machine. False where the spring is slower than 1 s or faster than 10 periods.
-bool if_start_design(if_start_config_t* c, const machine_model_t* m, const if_start_parameters_t* p);
+/// Derives damping and speed from the machine; those before them the caller has given. False where the spring is slower
+/// than 1 s or faster than 10 periods.
+bool if_start_design(if_start_config_t* c, const machine_model_t* m);
 
 /// angle_bam: where the vector points when it begins to turn.
 void if_start_begin(if_start_t* s, const if_start_config_t* c, uint32_t angle_bam, bool backward);
@@ -72,6 +70,9 @@ void if_start_begin(if_start_t* s, const if_start_config_t* c, uint32_t angle_ba
 /// rotor.
 void if_start_begin_turning(if_start_t* s, const if_start_config_t* c, uint32_t angle_bam, int32_t current_q20,
                             int32_t speed_bpp);
+
+/// A vector that took over a rotor turns it as it is commanded, or as fast as the source takes it back.
+void if_start_turn_to(if_start_t* s, const if_start_config_t* c, int32_t target_bpp);
 
 /// True once the vector has its last speed.
 static inline bool if_start_is_up(const if_start_t* s, const if_start_config_t* c) {

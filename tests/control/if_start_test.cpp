@@ -15,14 +15,13 @@ namespace stillspin::test {
 namespace {
 
 // 8 A, 100 ms at rest, 500 rpm/s up to 300 rpm, 2 s of patience.
-if_start_parameters_t usual() {
-  return {raw(8.0, 20), 1000, bpp(500.0 / 60.0 * kTurn * 4.0) / 10000, bpp(125.7), 20000};
+if_start_config_t usual() {
+  return {raw(8.0, 20), 1000, bpp(500.0 / 60.0 * kTurn * 4.0) / 10000, bpp(125.7), 20000, 0, 0, 0, 0, 0};
 }
 
-if_start_config_t designed(const Motor& m, const if_start_parameters_t& p) {
+if_start_config_t designed(const Motor& m, if_start_config_t c) {
   const machine_model_t model = model_of(m);
-  if_start_config_t c;
-  EXPECT_TRUE(if_start_design(&c, &model, &p));
+  EXPECT_TRUE(if_start_design(&c, &model));
   return c;
 }
 
@@ -170,20 +169,19 @@ TEST(IfStart, ARotorThatRunsAwayIsGivenUp) {
 }
 
 TEST(IfStart, RefusesASpringThatIsTooSlowOrTooFast) {
-  if_start_config_t c;
-  const if_start_parameters_t p = usual();
+  if_start_config_t c = usual();
   Motor heavy = motor_b();
   heavy.inertia = 0.5;
   heavy.flux = 0.002;
   const machine_model_t slow = model_of(heavy);
-  EXPECT_FALSE(if_start_design(&c, &slow, &p));
+  EXPECT_FALSE(if_start_design(&c, &slow));
   Motor light = motor_b();
   light.inertia = 1e-4;
   light.flux = 0.9;
   const machine_model_t fast = model_of(light);
-  if_start_parameters_t strong = p;
-  strong.current_q20 = raw(100.0, 20);
-  EXPECT_FALSE(if_start_design(&c, &fast, &strong));
+  c = usual();
+  c.current_q20 = raw(100.0, 20);
+  EXPECT_FALSE(if_start_design(&c, &fast));
 }
 
 // 1/w0 in periods: every current from none up to the last, and those next to the ends among them. The heavy shaft's
@@ -197,11 +195,11 @@ TEST(IfStart, ASpringFromTenToTenThousandPeriods) {
   for (const Motor& motor : {heavy, light}) {
     const machine_model_t m = model_of(motor);
     bool seen[2] = {false, false};
-    if_start_parameters_t p = usual();
+    if_start_config_t p = usual();
     for (double current = 100.0; current >= 0.0; current -= (current > 1.0) ? 0.25 : 1.0 / 1024.0) {
       p.current_q20 = raw(current, 20);
-      if_start_config_t c;
-      const bool taken = if_start_design(&c, &m, &p);
+      if_start_config_t c = p;
+      const bool taken = if_start_design(&c, &m);
       ASSERT_EQ(taken, c.damping_periods >= 10 && c.damping_periods <= 10000) << current;
       seen[0] = seen[0] || c.damping_periods == ((motor.inertia > 0.1) ? 9882 : 10);
       seen[1] = seen[1] || c.damping_periods == ((motor.inertia > 0.1) ? 10674 : 9);
@@ -214,7 +212,7 @@ TEST(IfStart, ASpringFromTenToTenThousandPeriods) {
 // the most that is lost. The steps of the speed are one at least.
 TEST(IfStart, WhatTheDesignMakesOfTheMachine) {
   const Motor m = motor_b();
-  if_start_parameters_t p = usual();
+  if_start_config_t p = usual();
   const if_start_config_t c = designed(m, p);
   EXPECT_NEAR(real(c.least_q16, 16), 125.7 * m.flux / 8.0, 1e-4);
   EXPECT_NEAR(real(c.per_emf_q4, 4) / bpp(1.0 / m.flux), 1.0, 3e-6);
@@ -237,7 +235,7 @@ TEST(IfStart, TheFilterIsAsLongAsTheVectorTakesToTurn) {
     for (double current = 0.25; current <= 16.0; current *= 1.25) {
       Motor m = motor_b();
       m.lq *= stretch;
-      if_start_parameters_t p = usual();
+      if_start_config_t p = usual();
       p.current_q20 = raw(current, 20);
       const if_start_config_t c = designed(m, p);
       const double periods = m.lq * current / m.flux * c.damping_periods;
@@ -324,7 +322,7 @@ TEST(IfStart, AgreementAndPatienceAreCountedFromTheLastSpeedOn) {
 
 // The current rises in whole shares and has its length from the middle of the time at rest on.
 TEST(IfStart, TheCurrentHasItsLengthFromTheMiddleOfTheRestOn) {
-  if_start_parameters_t p = usual();
+  if_start_config_t p = usual();
   p.current_q20 = raw(8.0, 20) + 499;  // no multiple of the steps
   const if_start_config_t c = designed(motor_b(), p);
   if_start_t s;

@@ -88,17 +88,24 @@ static void any_vector(if_start_t* s, const if_start_config_t* c) {
   s->mean_bpp = any_i32;
   s->agreed = any_from(0, IF_START_AGREED - 1);
   s->waited = any_from(-50, c->wait_periods);
-  s->sign = any_from(-1, 1);
+  s->sign = (int16_t)any_from(-1, 1);
 }
 
 // One step from each state leads to such a state again. A time at rest of `periods` to about twice as many: the current
 // rises by a share of it.
 static void turn_vector(int32_t periods) {
-  const if_start_parameters_t p = {any_from(0, 100 * AMPERES_Q20), any_from(periods, 2 * periods),
-                                   any_from(0, TURN_MAX_BPP), any_from(1, TURN_MAX_BPP), any_from(0, 100000L)};
-  if_start_config_t c;
+  if_start_config_t c = {any_from(0, 100 * AMPERES_Q20),
+                         any_from(periods, 2 * periods),
+                         any_from(0, TURN_MAX_BPP),
+                         any_from(1, TURN_MAX_BPP),
+                         any_from(0, 100000L),
+                         0,
+                         0,
+                         0,
+                         0,
+                         0};
   if_start_t s;
-  if (!if_start_design(&c, &model, &p)) return;
+  if (!if_start_design(&c, &model)) return;
   if_start_begin(&s, &c, any_u32, any_bool());
   if (any_bool())
     if_start_begin_turning(&s, &c, any_u32, any_from(0, 100 * AMPERES_Q20), any_from(-TURN_MAX_BPP, TURN_MAX_BPP));

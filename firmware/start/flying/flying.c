@@ -71,8 +71,9 @@ static void take_flux(drive_t* d) {
   const int32_t now_q30 = nominal_q30 + qc_mul(nominal_q30, m->trim.yqq_q24, 24);
   const int32_t emf_q16 = qc_mul_sat(flying_start.emf_q16, q_div(nominal_q30, now_q30, 24), 24);
   const int32_t off_q16 = qc_sub_sat(q_div(emf_q16, w_q30, 30), m->emf_q16);
-  if (qc_abs_sat(off_q16) < m->emf_q16 / 8) return;
-  m->trim.psi_q16 = q_clamp(off_q16, -m->emf_q16 / 8 * 3, m->emf_q16 / 8 * 3);
+  const int32_t eighth_q16 = m->emf_q16 / 8;
+  if (qc_abs_sat(off_q16) < eighth_q16) return;
+  m->trim.psi_q16 = q_limit(off_q16, 3 * eighth_q16);
 }
 
 // The start's clock: tick at which the running period began, from the start of START.

@@ -24,14 +24,14 @@
 
 if_start_t if_ramp;
 
-// The EMF alone shows the rotor, and not at this speed.
-static bool is_too_slow(int32_t speed_bpp) { return if_is_blind && qc_abs_sat(speed_bpp) < if_ramp_config.speed_bpp; }
+// The EMF alone does not show the rotor at this speed.
+static bool is_too_slow(int32_t speed_bpp) { return qc_abs_sat(speed_bpp) < if_ramp_config.speed_bpp; }
 
-// A vector that took over a rotor turns it as it is commanded, or as fast as the source takes it back.
-static int32_t end_bpp(const drive_t* d) {
-  const int32_t target_bpp = d->control.target_bpp;
-  if (is_too_slow(target_bpp)) return target_bpp;
-  return (target_bpp < 0) ? -if_ramp_config.speed_bpp : if_ramp_config.speed_bpp;
+// The vector has the shaft from here on.
+static void enter_if_ramp(drive_t* d) {
+  polarity_watch_end();
+  d->flags.open_loop = true;
+  start_enter(START_IF_RAMP);
 }
 
 static void begin_if_ramp(drive_t* d) {
@@ -40,11 +40,9 @@ static void begin_if_ramp(drive_t* d) {
   if_start_begin(&if_ramp, &if_ramp_config, 0, d->control.target_bpp < 0);
   current_controller_reset(&d->control.current);
   d->control.references.closed = true;
-  polarity_watch_end();
   if (drive_source_has(d, SOURCE_HANDS_OVER) && if_ramp_config.speed_bpp > d->config.blend.high_bpp)
     position_bumpless_transfer(&d->estimate);
-  d->flags.open_loop = true;
-  start_enter(START_IF_RAMP);
+  enter_if_ramp(d);
 }
 
 // Whether the source has anything to see: not while the vector rests, nor on the way through standstill.
@@ -106,7 +104,7 @@ static void take_resistance(drive_t* d) {
 static start_phase_t step_if_ramp(drive_t* d) {
   const estimator_output_t* const seen = &d->estimate.seen;
   if (d->schedule.task == TASK_FIELD) {
-    if (if_ramp.took_over) if_ramp.end_bpp = end_bpp(d);
+    if (if_ramp.took_over) if_start_turn_to(&if_ramp, &if_ramp_config, d->control.target_bpp);
     take_resistance(d);
     if_start_renew(&if_ramp, &if_ramp_config, d->control.command_q16);
   }
@@ -135,11 +133,11 @@ static void take_rotor(drive_t* d) {
   const int32_t load_q20 = qc_mul_sat(now->load_accel_q8, d->estimate.model.torque_per_accel_q24, 20);
   const int32_t limit_q20 = d->config.values.current_limit;
   const int32_t q_q20 = q_limit(qc_over(load_q20, d->control.per_torque_constant, 24), limit_q20);
-  const int32_t length_q20 = q_clamp(qc_shl_sat(qc_abs_sat(q_q20), 1), if_ramp_config.current_q20, limit_q20);
+  const int32_t length_q20 = q_clamp(2 * qc_abs_sat(q_q20), if_ramp_config.current_q20, limit_q20);
   const uint32_t ahead_bam = (uint32_t)qc_mul_sat(q_div(q_q20, length_q20, 24), BAM_PER_RAD, 24);
   turn_controllers(&d->control.current, ahead_bam);
   if_start_begin_turning(&if_ramp, &if_ramp_config, now->angle_bam + ahead_bam, length_q20, now->speed_bpp);
-  if_ramp.end_bpp = end_bpp(d);
+  if_start_turn_to(&if_ramp, &if_ramp_config, d->control.target_bpp);
   position_turn(&d->estimate, ahead_bam);
   d->control.references.current_q20.d = length_q20;
   d->control.references.current_q20.q = 0;
@@ -149,12 +147,11 @@ static void take_rotor(drive_t* d) {
 static void step_run(drive_t* d) {
   const int32_t now_bpp = d->control.ramp.value;
   const int32_t target_bpp = d->control.target_bpp;
-  if (!is_too_slow(now_bpp) || (!is_too_slow(target_bpp) && (target_bpp ^ now_bpp) >= 0)) return;
+  if (!if_is_blind || !is_too_slow(now_bpp)) return;
+  if (!is_too_slow(target_bpp) && (target_bpp ^ now_bpp) >= 0) return;
   take_rotor(d);
   start_return(d);
-  polarity_watch_end();
-  d->flags.open_loop = true;
-  start_enter(START_IF_RAMP);
+  enter_if_ramp(d);
 }
 
 const state_t if_run_state = {NULL, step_run, NULL, NULL};

@@ -13,10 +13,12 @@ static if_start_config_t made;
 
 static packed_text_t make(drive_config_t* c) {
   const parameters_t* const p = &parameters;
-  const if_start_parameters_t wanted = {
-      p->if_current, p->if_align * DRIVE_PERIODS_PER_MS, qc_mul_sat(p->if_acceleration, c->bpp_per_rpm_q8, 16) / 10000,
-      qc_mul_sat(p->if_speed, c->bpp_per_rpm_q8, 16), p->if_time * DRIVE_PERIODS_PER_MS};
-  const bool fits = if_start_design(&made, &c->nameplate, &wanted);
+  made.current_q20 = p->if_current;
+  made.align_periods = p->if_align * DRIVE_PERIODS_PER_MS;
+  made.step_bpp = qc_mul_sat(p->if_acceleration, c->bpp_per_rpm_q8, 16) / 10000;
+  made.speed_bpp = qc_mul_sat(p->if_speed, c->bpp_per_rpm_q8, 16);
+  made.wait_periods = p->if_time * DRIVE_PERIODS_PER_MS;
+  const bool fits = if_start_design(&made, &c->nameplate);
   if (p->start_method == 0) return PACKED_NONE;
   if (drive_source_selected_has(SOURCE_MEASURES)) return SAY_start_method_1_needs_a_position_source;
   if (p->if_current > p->current_limit) return SAY_if_current_must_not_exceed_current_limit;
