@@ -75,6 +75,18 @@ answer_status_t action_speed(int32_t rpm_q16, octet_writer_t* why) {
   return ANSWER_RANGE;
 }
 
+void put_name(octet_writer_t* w, const parameter_info_t* parameter) { put_packed(w, parameter_name(parameter)); }
+
+void put_name_is(octet_writer_t* w, const parameter_info_t* parameter) {
+  put_name(w, parameter);
+  put_packed(w, SAY_is);
+}
+
+void put_in_use(octet_writer_t* w, const parameter_info_t* parameter) {
+  put_name_is(w, parameter);
+  put_value(w, parameter, *parameter_in_use(parameter));
+}
+
 void put_number(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw) {
   put_quantity(w, raw, parameter->unit, parameter->q, parameter->decimals);
 }
@@ -84,10 +96,14 @@ void put_value(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw
   put_unit(w, parameter_unit(parameter));
 }
 
-void put_range(octet_writer_t* w, const parameter_info_t* parameter) {
+void put_span(octet_writer_t* w, const parameter_info_t* parameter) {
   put_number(w, parameter, parameter_minimum(parameter));
   put_packed(w, SAY_to);
   put_value(w, parameter, parameter_maximum(parameter));
+}
+
+void put_range(octet_writer_t* w, const parameter_info_t* parameter) {
+  put_span(w, parameter);
   put_packed(w, SAY_nothing_changed);
 }
 
@@ -109,9 +125,7 @@ void put_conflict(octet_writer_t* w, packed_text_t conflict) {
     count = 0;
     if (p == NULL) continue;
     put_packed(w, separator);
-    put_packed(w, parameter_name(p));
-    put_packed(w, SAY_is);
-    put_value(w, p, parameter_get(p->id));
+    put_in_use(w, p);
     separator = SAY_comma;
   } while (c != 0u);
   put_u8(w, ')');  // every rule names a parameter
@@ -119,8 +133,7 @@ void put_conflict(octet_writer_t* w, packed_text_t conflict) {
 
 // With one decimal more where the table's are too few to show what is wrong.
 static answer_status_t refuse_range(const parameter_info_t* p, int32_t raw, octet_writer_t* why) {
-  put_packed(why, parameter_name(p));
-  put_packed(why, SAY_is);
+  put_name_is(why, p);
   put_quantity(why, raw, p->unit, p->q, (uint16_t)(p->decimals + 1u));
   put_packed(why, SAY_is_outside_of);
   put_range(why, p);
@@ -137,9 +150,9 @@ static bool is_refused(packed_text_t conflict) {
 
 // What it would conflict with is known before the table has it.
 static answer_status_t set(const parameter_info_t* p, int32_t raw, octet_writer_t* why) {
-  const packed_text_t conflict = parameter_conflict_with(p->id, raw);
+  const packed_text_t conflict = parameter_conflict_with(p, raw);
   const bool refused = is_refused(conflict);
-  if (!refused) parameter_change(p->id, raw);
+  if (!refused) parameter_change(p, raw);
   if (conflict == PACKED_NONE) return ANSWER_OK;
   put_packed(why, refused ? SAY_not_taken_while_the_drive_runs : SAY_set_but_the_drive_does_not_start);
   put_conflict(why, conflict);
@@ -147,13 +160,13 @@ static answer_status_t set(const parameter_info_t* p, int32_t raw, octet_writer_
 }
 
 answer_status_t action_set(const parameter_info_t* parameter, int32_t raw, octet_writer_t* why) {
-  switch (parameter_settable(parameter->id, raw)) {
+  switch (parameter_settable(parameter_by_id(parameter->id), raw)) {
     case SET_OK:
       return set(parameter, raw, why);
     case SET_RANGE:
       return refuse_range(parameter, raw, why);
     case SET_RUNNING:
-      put_packed(why, parameter_name(parameter));
+      put_name(why, parameter);
       put_packed(why, SAY_may_not_change_while_the_power_stage);
       return ANSWER_RUNNING;
     default:

@@ -54,10 +54,17 @@ void put_speed_limit(octet_writer_t* w, packed_text_t why);
 /// A rule that does not hold, with what the parameters that it names are now.
 void put_conflict(octet_writer_t* w, packed_text_t conflict);
 
+void put_name(octet_writer_t* w, const parameter_info_t* parameter);
+/// The name, and that it is what follows; and the value in use, with its unit.
+void put_name_is(octet_writer_t* w, const parameter_info_t* parameter);
+void put_in_use(octet_writer_t* w, const parameter_info_t* parameter);
+
 /// A value in user's units, as the table has its decimals.
 void put_number(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw);
 /// The same with its unit.
 void put_value(octet_writer_t* w, const parameter_info_t* parameter, int32_t raw);
+/// From the least value to the largest.
+void put_span(octet_writer_t* w, const parameter_info_t* parameter);
 
 #if defined(__cplusplus)
 }

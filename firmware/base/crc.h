@@ -22,6 +22,9 @@ extern "C" {
 uint16_t crc16_add(uint16_t crc, uint16_t octet);
 uint32_t crc32_add(uint32_t crc, uint16_t octet);
 
+/// With `count` octets more.
+uint32_t crc32_add_all(uint32_t crc, const uint16_t* octets, uint16_t count);
+
 /// What is sent or stored of a CRC-32 that began with CRC32_BEGIN. A CRC-16 is sent as it is.
 static inline uint32_t crc32_end(uint32_t crc) { return crc ^ 0xFFFFFFFFuL; }
 

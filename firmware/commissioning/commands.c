@@ -28,17 +28,17 @@ static void show_commissioning(void) {
 }
 
 static bool list_results(uint16_t step) {
-  const commissioning_result_t r = drive_commissioning_result(step);
-  const parameter_info_t* const p = parameter_by_id(r.id);
-  if (p == NULL) return false;  // there is no such result, or none any more
+  const commissioning_result_t* const r = drive_commissioning_result(step);
+  if (r == NULL) return false;  // there is no such result, or none any more
+  const parameter_info_t* const p = parameter_by_id(r->id);
   octet_writer_t* const w = line_begin();
-  put_packed(w, parameter_name(p));
+  put_name(w, p);
   put_spaces_to(w, 22);
-  put_number(w, p, r.before);
+  put_number(w, p, r->before);
   put_packed(w, SAY_becomes);
-  put_value(w, p, r.value);
+  put_value(w, p, r->value);
   put_spaces_to(w, 50);
-  put_message(w, CATALOGUE_VERDICT, (uint16_t)r.verdict);
+  put_message(w, CATALOGUE_VERDICT, (uint16_t)r->verdict);
   line_end();
   return true;
 }

@@ -55,7 +55,8 @@ commissioning_phase_t drive_commissioning_phase(void);
 int32_t drive_commissioning_progress(void);
 /// None but when the outcome is DONE or PARTLY.
 uint16_t drive_commissioning_count(void);
-commissioning_result_t drive_commissioning_result(uint16_t index);
+/// NULL behind the last one.
+const commissioning_result_t* drive_commissioning_result(uint16_t index);
 
 #if defined(__cplusplus)
 }

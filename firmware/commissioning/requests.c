@@ -14,12 +14,12 @@ static answer_status_t request_commission(request_t* r) {
 static answer_status_t request_commission_result(request_t* r) {
   const uint16_t index = take_u16(&r->body);
   put_u16(&r->answer, drive_commissioning_count());
-  if (index >= drive_commissioning_count()) return ANSWER_OK;  // there is no such one: the number alone
-  const commissioning_result_t v = drive_commissioning_result(index);
-  put_u16(&r->answer, v.id);
-  put_i32(&r->answer, v.before);
-  put_i32(&r->answer, v.value);
-  put_u8(&r->answer, (uint16_t)v.verdict);
+  const commissioning_result_t* const v = drive_commissioning_result(index);
+  if (v == NULL) return ANSWER_OK;  // there is no such one: the number alone
+  put_u16(&r->answer, v->id);
+  put_i32(&r->answer, v->before);
+  put_i32(&r->answer, v->value);
+  put_u8(&r->answer, (uint16_t)v->verdict);
   return ANSWER_OK;
 }
 

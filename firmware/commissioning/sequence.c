@@ -1,3 +1,5 @@
+#include <stddef.h>
+
 #include "firmware/base/clear.h"
 #include "firmware/commissioning/commissioning.h"
 #include "firmware/commissioning/outcome.h"
@@ -19,11 +21,6 @@ commissioning_t commissioning;
 static commissioning_report_t report;
 static const state_request_t commission = {DRIVE_COMMISSION, DRIVE_READY};
 
-typedef struct {
-  bool (*step)(drive_t* d);
-  int16_t begins;  // per mille of the time of the whole, as motor A takes it
-} phase_t;
-
 void commissioning_reset(void) { clear(&commissioning, sizeof commissioning); }
 
 static bool at_once(drive_t* d) {
@@ -31,12 +28,12 @@ static bool at_once(drive_t* d) {
   return true;
 }
 
-static const phase_t phases[] = {{at_once, 0},
-                                 {commissioning_align, 0},
-                                 {commissioning_climb, 8},
-                                 {commissioning_spin, 173},
-                                 {commissioning_map, 242},
-                                 {at_once, 1000}};
+// By commissioning_phase_t; the evaluation is the background level's.
+static bool (*const phases[])(drive_t* d) = {at_once, commissioning_align, commissioning_climb, commissioning_spin,
+                                             commissioning_map};
+
+// Per mille of the time of the whole at which each begins, as motor A takes it.
+static const int16_t begins[] = {0, 0, 8, 173, 242, 1000};
 
 static void commissioning_begin(drive_t* d, drive_state_t behind) {
   (void)behind;  // it ends in READY
@@ -80,7 +77,7 @@ static void commissioning_step(drive_t* d) {
     if (!c->evaluate) drive_enter(d, DRIVE_READY);
     return;
   }
-  const bool done = phases[c->phase].step(d);
+  const bool done = phases[c->phase](d);
   c->tick = qc_add_sat(c->tick, 1);
   if (done) next_phase(d);
 }
@@ -176,9 +173,9 @@ static int32_t within_phase(const commissioning_t* c) {
 
 int32_t drive_commissioning_progress(void) {
   const commissioning_t* const c = &commissioning;
-  const phase_t* const p = &phases[c->phase];
-  if (c->phase == COMMISSIONING_EVALUATE) return p->begins;
-  return p->begins + within_phase(c) * (p[1].begins - p->begins) / 1000;
+  const int16_t* const here = &begins[c->phase];
+  if (c->phase == COMMISSIONING_EVALUATE) return here[0];
+  return here[0] + within_phase(c) * (here[1] - here[0]) / 1000;
 }
 
 uint16_t drive_commissioning_count(void) {
@@ -186,7 +183,6 @@ uint16_t drive_commissioning_count(void) {
   return (outcome == COMMISSIONING_DONE || outcome == COMMISSIONING_PARTLY) ? report.count : 0u;
 }
 
-commissioning_result_t drive_commissioning_result(uint16_t index) {
-  static const commissioning_result_t none = {0, 0, 0, VERDICT_NOT_MEASURED};
-  return (index < drive_commissioning_count()) ? report.list[index] : none;
+const commissioning_result_t* drive_commissioning_result(uint16_t index) {
+  return (index < drive_commissioning_count()) ? &report.list[index] : NULL;
 }

@@ -62,11 +62,12 @@ packed_text_t parameter_conflict(void) {
 }
 
 // No interrupt reads the table, so nobody sees the value meanwhile.
-packed_text_t parameter_conflict_with(uint16_t id, int32_t raw) {
-  const int32_t before = parameter_get(id);
-  parameter_write(id, raw);
+packed_text_t parameter_conflict_with(const parameter_info_t* p, int32_t raw) {
+  int32_t* const value = parameter_in_use(p);
+  const int32_t before = *value;
+  *value = raw;
   const packed_text_t conflict = parameter_conflict();
-  parameter_write(id, before);
+  *value = before;
   return conflict;
 }
 

@@ -3,8 +3,7 @@
 #ifndef STILLSPIN_FIRMWARE_CONFIG_RULES_H
 #define STILLSPIN_FIRMWARE_CONFIG_RULES_H
 
-#include <stdint.h>
-
+#include "firmware/dictionary/parameters.h"
 #include "firmware/text/packed_text.h"
 
 #if defined(__cplusplus)
@@ -17,7 +16,7 @@ packed_text_t parameter_rule_broken(void);
 /// of them is made (config.h).
 packed_text_t parameter_conflict(void);
 /// The same, were this parameter at that value.
-packed_text_t parameter_conflict_with(uint16_t id, int32_t raw);
+packed_text_t parameter_conflict_with(const parameter_info_t* p, int32_t raw);
 /// The same of the present ones, without a calculation when the background level has made a configuration of them.
 packed_text_t parameter_conflict_known(void);
 

@@ -40,8 +40,7 @@ bool command_makes_safe(const editor_line_t* line) {
 
 static void put_command(uint16_t command) {
   octet_writer_t* const w = line_begin();
-  put_packed(w, command_name(command));
-  put_u8(w, ' ');
+  put_label(w, command_name(command));
   put_packed(w, command_arguments(command));
   put_spaces_to(w, 26);
   put_packed(w, command_meaning(command));

@@ -16,9 +16,9 @@
 #define COLUMN_MEANING 42u
 
 static void put_row(const parameter_info_t* p) {
-  const int32_t raw = parameter_get(p->id);
+  const int32_t raw = *parameter_in_use(p);
   octet_writer_t* const w = line_begin();
-  put_packed(w, parameter_name(p));
+  put_name(w, p);
   put_spaces_to(w, COLUMN_VALUE - 1u);
   put_u8(w, (raw == parameter_initial(p)) ? ' ' : '*');
   put_value(w, p, raw);
@@ -46,14 +46,10 @@ static bool describe(uint16_t step) {
   if (p == NULL) return false;
   octet_writer_t* const w = line_begin();
   if (step == 0u) {
-    put_packed(w, parameter_name(p));
-    put_packed(w, SAY_is);
-    put_value(w, p, parameter_get(p->id));
+    put_in_use(w, p);
   } else if (step == 1u) {
     put_packed(w, SAY_indent);
-    put_number(w, p, parameter_minimum(p));
-    put_packed(w, SAY_to);
-    put_value(w, p, parameter_maximum(p));
+    put_span(w, p);
     put_packed(w, SAY_default);
     put_number(w, p, parameter_initial(p));
     put_packed(w, SAY_number);
@@ -90,10 +86,8 @@ static void take_value(const parameter_info_t* p, int32_t raw) {
   octet_writer_t* const w = line_begin();
   const answer_status_t status = action_set(p, raw, w);
   if (status == ANSWER_OK) {
-    put_packed(w, parameter_name(p));
-    put_packed(w, SAY_is);
-    put_value(w, p, parameter_get(p->id));
-  } else if (parameter_get(p->id) != raw) {  // one that does not fit together with others yet is taken
+    put_in_use(w, p);
+  } else if (*parameter_in_use(p) != raw) {  // one that does not fit together with others yet is taken
     count_refusal();
   }
   line_end();
@@ -102,8 +96,7 @@ static void take_value(const parameter_info_t* p, int32_t raw) {
 // As it was typed: a number that does not fit has no other form.
 static void refuse_value(const parameter_info_t* p, const word_t* typed, packed_text_t why) {
   octet_writer_t* const w = line_begin();
-  put_packed(w, parameter_name(p));
-  put_packed(w, SAY_is);
+  put_name_is(w, p);
   put_word(w, typed);
   put_packed(w, why);
   put_range(w, p);

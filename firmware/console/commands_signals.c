@@ -24,8 +24,7 @@ static struct {
 static void put_watched(octet_writer_t* w) {
   for (uint16_t k = 0; k < self.watched_count; k++) {
     if (k > 0u) put_packed(w, SAY_gap);
-    put_packed(w, signal_info(self.watched[k])->name);
-    put_u8(w, ' ');
+    put_label(w, signal_info(self.watched[k])->name);
     put_signal(w, self.watched[k]);
   }
 }

@@ -170,8 +170,13 @@ static editor_event_t control(editor_t* e, uint16_t octet, octet_writer_t* echo)
     case DELETE:
       backspace(e, echo);
       break;
+    case CTRL_C:
     case CTRL_U:
       begin_line(e);
+      if (octet == CTRL_C) {
+        put_text(echo, "^C\r\n");
+        return EDITOR_BREAK;
+      }
       editor_show(e, echo);
       break;
     case CTRL_A:
@@ -179,10 +184,6 @@ static editor_event_t control(editor_t* e, uint16_t octet, octet_writer_t* echo)
       key(e, (octet == CTRL_A) ? 'H' : 'F');
       editor_show(e, echo);
       break;
-    case CTRL_C:
-      begin_line(e);
-      put_text(echo, "^C\r\n");
-      return EDITOR_BREAK;
     case ESCAPE:
       e->escape = ESCAPE_BEGUN;
       break;

@@ -28,8 +28,12 @@ void put_signal(octet_writer_t* w, uint16_t place) {
   put_signal_value(w, s, raw);
 }
 
-void put_signal_value(octet_writer_t* w, const signal_info_t* s, int32_t raw) {
+void put_signal_number(octet_writer_t* w, const signal_info_t* s, int32_t raw) {
   put_fixed(w, raw, signal_q(s), signal_decimals(s));
+}
+
+void put_signal_value(octet_writer_t* w, const signal_info_t* s, int32_t raw) {
+  put_signal_number(w, s, raw);
   put_unit(w, signal_unit(s));
 }
 

@@ -22,7 +22,8 @@ uint16_t signal_find(const word_t* name);
 /// As many decimals as its format is worth.
 uint16_t signal_decimals(const signal_info_t* s);
 
-/// A raw value of it, with its unit.
+/// A raw value of it, and with its unit.
+void put_signal_number(octet_writer_t* w, const signal_info_t* s, int32_t raw);
 void put_signal_value(octet_writer_t* w, const signal_info_t* s, int32_t raw);
 
 /// Its value now, with its unit.

@@ -97,8 +97,8 @@ static uint16_t row_of(uint16_t index) {
   return index;
 }
 
-void parameters_reset(void) {
-  for (uint16_t k = 0; k < COUNT; k++) *value_of(&parameters, k) = parameter_initial(&table[k]);
+void parameters_reset(parameters_t* of) {
+  for (uint16_t k = 0; k < COUNT; k++) *value_of(of, k) = parameter_initial(&table[k]);
 }
 
 uint16_t parameter_count(void) {
@@ -134,10 +134,7 @@ const parameter_info_t* parameter_by_id(uint16_t id) {
 
 bool parameter_is_left_out(uint16_t id) { return rows_have(edition_parameters_left_out, row_by_id(id)); }
 
-void parameter_write(uint16_t id, int32_t raw) {
-  const uint16_t k = row_by_id(id);
-  if (is_here(k)) *value_of(&parameters, k) = raw;
-}
+int32_t* parameter_in_use(const parameter_info_t* p) { return value_of(&parameters, (uint16_t)(p - table)); }
 
 int32_t parameter_get(uint16_t id) {
   const uint16_t k = row_by_id(id);

@@ -23,6 +23,7 @@ typedef struct {
 extern parameters_t parameters;
 
 /// The struct is an array with names: what stands side by side in the list is read in a loop.
+#define PARAMETER_PLACES (sizeof(parameters_t) / sizeof(int32_t))
 #define PARAMETER_PLACE(name) ((uint16_t)(offsetof(parameters_t, name) / sizeof(int32_t)))
 static inline int32_t parameter_at(uint16_t place) { return ((const int32_t*)(const void*)&parameters)[place]; }
 
@@ -74,15 +75,16 @@ int32_t* parameter_value(parameters_t* of, uint16_t index);
 const parameter_info_t* parameter_by_id(uint16_t id);
 /// Capitals count as small letters.
 const parameter_info_t* parameter_named(const uint16_t* name, uint16_t count);
-/// No check: see parameter_set in mode/commands.h. A number that does not exist writes nothing.
-void parameter_write(uint16_t id, int32_t raw);
+/// Where its value in use is. Nothing is checked of what is written there: see parameter_set in mode/commands.h.
+int32_t* parameter_in_use(const parameter_info_t* p);
+/// The value in use by its number; 0 when there is none.
 int32_t parameter_get(uint16_t id);
 
 /// Of a feature that this edition has not: it stays at its default.
 bool parameter_is_left_out(uint16_t id);
 
-/// Puts every parameter to its default.
-void parameters_reset(void);
+/// Puts every parameter to its default, those as well that the edition has not.
+void parameters_reset(parameters_t* of);
 
 #if defined(__cplusplus)
 }

@@ -30,7 +30,7 @@ void drive_reset(void) {
   clear(&polarity_watch, sizeof polarity_watch);
   clear(&inertia_match, sizeof inertia_match);
   fault_history_reset();
-  parameters_reset();
+  parameters_reset(&parameters);
   for (uint16_t k = 0; edition_resets[k] != NULL; k++) edition_resets[k]();
   drive.zero_current_a_q8 = drive.zero_current_b_q8 = DRIVE_MIDDLE_Q8;
   drive.estimate.trim.offset_a_q8 = drive.zero_current_a_q8;

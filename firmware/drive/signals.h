@@ -4,6 +4,7 @@
 #define STILLSPIN_FIRMWARE_DRIVE_SIGNALS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "firmware/dictionary/units.h"
@@ -17,6 +18,9 @@ typedef struct {
 #include "firmware/dictionary/all_signals.h"
 } drive_signals_t;
 #undef SIGNAL
+
+/// The struct is an array with names.
+#define SIGNAL_PLACE(name) ((uint16_t)(offsetof(drive_signals_t, name) / sizeof(int32_t)))
 
 /// All signals, as one control interrupt left them, without holding the next one up.
 drive_signals_t drive_signals(void);

@@ -23,6 +23,9 @@ typedef struct {
   uint16_t events_dropped;
 } link_errors_t;
 
+/// Of records and port, each a word.
+#define LINK_ERROR_COUNTS ((sizeof(splitter_errors_t) + sizeof(hal_sci_errors_t)) / sizeof(uint16_t))
+
 /// Power-on state. The port itself is left alone.
 void link_reset(void);
 

@@ -88,13 +88,8 @@ static answer_status_t request_fault(request_t* r) {
 static answer_status_t request_link(request_t* r) {
   const link_errors_t e = link_errors();
   octet_writer_t* const w = &r->answer;
-  put_u16(w, e.records.damaged);
-  put_u16(w, e.records.too_long);
-  put_u16(w, e.records.broken_off);
-  put_u16(w, e.port.framing);
-  put_u16(w, e.port.overrun);
-  put_u16(w, e.port.breaks);
-  put_u16(w, e.port.lost);
+  const uint16_t* const counts = (const uint16_t*)(const void*)&e;  // in the struct's order
+  for (uint16_t k = 0; k < LINK_ERROR_COUNTS; k++) put_u16(w, counts[k]);
   put_u16(w, stream_lost(r->port));
   put_u16(w, feature_status.refusals);
   return ANSWER_OK;

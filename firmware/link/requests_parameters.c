@@ -18,7 +18,7 @@ static answer_status_t request_parameter_read(request_t* r) {
     const parameter_info_t* const p = parameter_info((uint16_t)(first + k));
     if (p == NULL) break;
     put_u16(&r->answer, p->id);
-    put_i32(&r->answer, parameter_get(p->id));
+    put_i32(&r->answer, *parameter_in_use(p));
   }
   return ANSWER_OK;
 }
@@ -35,7 +35,7 @@ static answer_status_t request_parameter_set(request_t* r) {
   const parameter_info_t* const p = parameter_by_id(id);
   if (p == NULL) return refuse(id);
   const answer_status_t status = action_set(p, take_i32(&r->body), &r->answer);
-  if (status == ANSWER_OK) put_i32(&r->answer, parameter_get(p->id));
+  if (status == ANSWER_OK) put_i32(&r->answer, *parameter_in_use(p));
   return status;
 }
 

@@ -22,7 +22,7 @@ static void put_parameter(octet_writer_t* w, const parameter_info_t* p) {
   put_i32(w, parameter_minimum(p));
   put_i32(w, parameter_maximum(p));
   put_i32(w, parameter_initial(p));
-  put_packed(w, parameter_name(p));
+  put_name(w, p);
   put_u8(w, 0);
   put_packed(w, parameter_unit(p));
   put_u8(w, 0);
@@ -57,10 +57,6 @@ void requests_reset(void) {
   sum.scales = unit_scales();
 }
 
-static void add(const octet_writer_t* piece) {
-  for (uint16_t k = 0; k < piece->count; k++) sum.crc = crc32_add(sum.crc, piece->octets[k]);
-}
-
 static void next_stage(void) {
   sum.at = 0;
   sum.stage++;
@@ -93,7 +89,7 @@ void requests_service(uint16_t* scratch) {
       put_signal(&piece, s);
     }
   }
-  add(&piece);
+  sum.crc = crc32_add_all(sum.crc, piece.octets, piece.count);
 }
 
 static uint16_t faults(void) {

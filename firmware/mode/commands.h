@@ -18,9 +18,9 @@ extern "C" {
 /// in the background.
 parameter_result_t parameter_set(uint16_t id, int32_t raw);
 /// In two steps: whether it may be set now, which stays so until the change is made or the next interrupts are over
-/// that may start the drive; and the change.
-parameter_result_t parameter_settable(uint16_t id, int32_t raw);
-void parameter_change(uint16_t id, int32_t raw);
+/// that may start the drive; and the change. NULL is unknown.
+parameter_result_t parameter_settable(const parameter_info_t* info, int32_t raw);
+void parameter_change(const parameter_info_t* info, int32_t raw);
 
 /// Since power-on, by the control interrupt; wraps after 49 days.
 uint32_t drive_time_ms(void);

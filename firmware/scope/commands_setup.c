@@ -73,7 +73,7 @@ static bool read_level(const words_of_line_t* a, bool is_width, scope_setup_t* s
   octet_writer_t* const w = line_begin();
   put_word(w, &typed);
   put_packed(w, why);
-  put_fixed(w, least, signal_q(signal), signal_decimals(signal));
+  put_signal_number(w, signal, least);
   put_packed(w, SAY_to);
   put_signal_value(w, signal, most);
   put_packed(w, SAY_nothing_changed);
@@ -117,11 +117,9 @@ static bool read_whole(const word_t* typed, uint16_t least, uint16_t most, uint1
 
 bool scope_whole(const words_of_line_t* a, uint16_t least, uint16_t most, uint16_t* value) {
   if (a->count == 2u && read_whole(&a->word[1], least, most, value)) return true;
+  const word_t typed = words_from(a, 0);
   octet_writer_t* const w = line_begin();
-  for (uint16_t k = 0; k < a->count; k++) {
-    put_word(w, &a->word[k]);
-    if (k + 1u < a->count) put_u8(w, ' ');
-  }
+  put_word(w, &typed);
   put_packed(w, SAY_is_not_a_whole_number_in);
   put_count(w, least, SAY_to);
   put_count(w, most, SAY_nothing_changed);

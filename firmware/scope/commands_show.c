@@ -30,16 +30,13 @@ static void put_trigger(octet_writer_t* w, const scope_setup_t* s) {
   put_packed(w, SAY_trigger);
   if (s->edge != SCOPE_AT_ONCE) {
     const signal_info_t* const signal = signal_info(s->trigger);
-    put_packed(w, signal->name);
-    put_u8(w, ' ');
-    put_packed(w, scope_edge_text((uint16_t)s->edge));
-    put_u8(w, ' ');
+    put_label(w, signal->name);
+    put_label(w, scope_edge_text((uint16_t)s->edge));
     put_signal_value(w, signal, s->level);
     if (s->hysteresis >= 0) {
       put_packed(w, SAY_comma);
-      put_packed(w, SAY_hysteresis);
-      put_u8(w, ' ');
-      put_fixed(w, s->hysteresis, signal_q(signal), signal_decimals(signal));
+      put_label(w, SAY_hysteresis);
+      put_signal_number(w, signal, s->hysteresis);
     }
   } else {
     put_packed(w, SAY_edge_now);

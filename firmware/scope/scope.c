@@ -31,12 +31,12 @@ typedef struct {
   bool was_below, was_above;      // by the hysteresis, since the last edge
   bool fired;                     // since the last record
   uint16_t mark;                  // the trigger's record; SCOPE_NOWHERE
+  uint16_t unread;                // AUTO: a bit for each channel whose last word has not been read; none behind a stop
   int32_t lowest, highest, mean;  // of the trigger signal, of late; nothing yet while the lowest is the higher one
   signal_look_t* trigger_look;
   scope_setup_t setup;
   watched_t watched[SCOPE_CHANNELS];
   uint32_t mark_time_ms;
-  uint16_t unread;  // AUTO: a bit for each channel whose last word has not been read; none behind a stop
 } scope_t;
 static scope_t scope;
 static int16_t ring[SCOPE_CHANNELS][SCOPE_DEPTH];

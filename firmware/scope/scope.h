@@ -64,9 +64,9 @@ typedef struct {
   scope_mode_t mode;
   scope_edge_t edge;
   uint16_t trigger;    // index of the trigger signal
-  int32_t level;       // raw, in its format
-  int32_t hysteresis;  // the same; SCOPE_BY_SPAN
   uint16_t count;      // channels, 1..SCOPE_CHANNELS
+  int32_t level;       // raw, in the trigger's format
+  int32_t hysteresis;  // the same; SCOPE_BY_SPAN
   scope_channel_t channel[SCOPE_CHANNELS];
 } scope_setup_t;
 

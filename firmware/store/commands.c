@@ -20,7 +20,7 @@ static void put_report(octet_writer_t* w) {
   put_packed(w, SAY_semicolon);
   put_count(w, r->refused, SAY_refused_now_at_their_default);
   put_packed(w, SAY_colon);
-  put_packed(w, parameter_name(first));
+  put_name(w, first);
   if (r->refused > 1u) put_packed(w, SAY_and_more);
 }
 

@@ -36,9 +36,7 @@ void reader_begin(uint16_t slot) {
   read_on(SLOT_HEADER);
 }
 
-static void take(uint16_t octets) {
-  for (uint16_t k = 0; k < octets; k++) self.crc = crc32_add(self.crc, self.chunk[self.used + k]);
-}
+static void take(uint16_t octets) { self.crc = crc32_add_all(self.crc, &self.chunk[self.used], octets); }
 
 // What has come is the header.
 static reader_result_t take_header(void) {

@@ -94,7 +94,7 @@ bool store_defaults(void) {
   if (store_is_busy()) return false;
   drive_parameters_changed();  // no start from here on until the background has taken the change
   if (drive_is_energised()) return false;
-  parameters_reset();
+  parameters_reset(&parameters);
   return true;
 }
 
@@ -113,8 +113,8 @@ static store_state_t take_over(void) {
     return STORE_CONFLICT;
   }
   if (self.report.older) return STORE_OLDER;
-  const bool other_firmware = self.report.rescaled > 0u || self.report.refused > 0u || self.report.missing > 0u ||
-                              self.report.unknown > self.report.left_out;
+  const store_report_t* const r = &self.report;
+  const bool other_firmware = (r->rescaled | r->refused | r->missing) != 0u || r->unknown > r->left_out;
   return other_firmware ? STORE_MIGRATED : STORE_LOADED;
 }
 

@@ -27,8 +27,7 @@ static uint16_t find(uint16_t id) {
 void values_reset(void) {
   self.guess = 0;
   self.has_rated_current = false;
-  for (uint16_t k = 0; k < parameter_count(); k++)
-    *parameter_value(&self.set, k) = parameter_initial(parameter_info(k));
+  parameters_reset(&self.set);
 }
 
 void values_copy(void) {
@@ -76,18 +75,21 @@ slot_entry_t values_entry(uint16_t index) {
   return entry;
 }
 
+// What this edition has not is at its default in both sets.
+static int32_t* all_of(parameters_t* of) { return (int32_t*)(void*)of; }
+
 uint16_t values_changed(void) {
   uint16_t changed = 0;
-  for (uint16_t k = 0; k < parameter_count(); k++) {
-    if (*parameter_value(&parameters, k) != *parameter_value(&self.set, k)) changed++;
+  for (uint16_t k = 0; k < PARAMETER_PLACES; k++) {
+    if (all_of(&parameters)[k] != all_of(&self.set)[k]) changed++;
   }
   return changed;
 }
 
 void values_swap(void) {
-  for (uint16_t k = 0; k < parameter_count(); k++) {
-    const int32_t kept = *parameter_value(&parameters, k);
-    *parameter_value(&parameters, k) = *parameter_value(&self.set, k);
-    *parameter_value(&self.set, k) = kept;
+  for (uint16_t k = 0; k < PARAMETER_PLACES; k++) {
+    const int32_t kept = all_of(&parameters)[k];
+    all_of(&parameters)[k] = all_of(&self.set)[k];
+    all_of(&self.set)[k] = kept;
   }
 }

@@ -25,6 +25,12 @@ static struct {
 
 static uint16_t slot_octets(void) { return (uint16_t)(SLOT_HEADER + self.header.length + SLOT_CHECK); }
 
+// In the memory.
+static uint16_t slot_begins(void) { return (uint16_t)(self.new_slot * SLOT_SIZE); }
+
+// Where the memory has taken a job.
+static writer_result_t goes_on(bool taken) { return taken ? WRITER_GOES_ON : WRITER_FAILED; }
+
 uint16_t writer_progress(void) {
   const uint16_t share = (uint16_t)(90uL * self.written / slot_octets());
   if (self.stage == COMPOSE || self.stage == WRITE_PAGE) return share;
@@ -41,7 +47,7 @@ store_report_t writer_report(void) {
 }
 
 static void put(uint16_t octets) {
-  for (uint16_t k = 0; k < octets; k++) self.crc = crc32_add(self.crc, self.page[self.filled + k]);
+  self.crc = crc32_add_all(self.crc, &self.page[self.filled], octets);
   self.filled = (uint16_t)(self.filled + octets);
 }
 
@@ -92,8 +98,7 @@ static writer_result_t copy_unknown(void) {
 static writer_result_t compose(void) {
   if (self.complete || self.filled > HAL_NVM_PAGE - SLOT_ENTRY) {
     self.stage = WRITE_PAGE;
-    const uint16_t address = (uint16_t)(self.new_slot * SLOT_SIZE + self.written);
-    return hal_nvm_write(address, self.page, self.filled) ? WRITER_GOES_ON : WRITER_FAILED;
+    return goes_on(hal_nvm_write((uint16_t)(slot_begins() + self.written), self.page, self.filled));
   }
   if (self.next < parameter_count()) {
     const slot_entry_t entry = values_entry(self.next++);
@@ -133,15 +138,13 @@ static writer_result_t read_back(void) {
   if (reader_header()->sequence != self.header.sequence) return WRITER_FAILED;
   self.stage = WRITE_MAGIC;
   slot_pack_u32(SLOT_MAGIC, self.page);
-  return hal_nvm_write((uint16_t)(self.new_slot * SLOT_SIZE), self.page, SLOT_MAGIC_OCTETS) ? WRITER_GOES_ON
-                                                                                            : WRITER_FAILED;
+  return goes_on(hal_nvm_write(slot_begins(), self.page, SLOT_MAGIC_OCTETS));
 }
 
 static writer_result_t on_magic_written(void) {
   self.stage = READ_MAGIC;
   self.page[0] = 0;
-  return hal_nvm_read((uint16_t)(self.new_slot * SLOT_SIZE), self.page, SLOT_MAGIC_OCTETS) ? WRITER_GOES_ON
-                                                                                           : WRITER_FAILED;
+  return goes_on(hal_nvm_read(slot_begins(), self.page, SLOT_MAGIC_OCTETS));
 }
 
 writer_result_t writer_step(void) {

@@ -91,6 +91,11 @@ void put_packed(octet_writer_t* w, packed_text_t text) {
   }
 }
 
+void put_label(octet_writer_t* w, packed_text_t text) {
+  put_packed(w, text);
+  put_u8(w, ' ');
+}
+
 void put_count(octet_writer_t* w, uint32_t count, packed_text_t what) {
   put_unsigned(w, count);
   put_packed(w, what);

@@ -44,6 +44,9 @@ uint16_t packed_next(packed_reader_t* r);
 /// Writes a text out.
 void put_packed(octet_writer_t* w, packed_text_t text);
 
+/// The same with a space behind it.
+void put_label(octet_writer_t* w, packed_text_t text);
+
 /// A number, and the text behind it.
 void put_count(octet_writer_t* w, uint32_t count, packed_text_t what);
 

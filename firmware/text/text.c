@@ -23,8 +23,8 @@ void put_fixed(octet_writer_t* w, int32_t raw, uint16_t q, uint16_t decimals) {
   const uint32_t magnitude = q_abs_u32(raw);
   uint32_t whole = (uint32_t)((uint64_t)magnitude >> q);
   const uint64_t rest = magnitude - ((uint64_t)whole << q);
-  const uint64_t half = (q > 0u) ? (uint64_t)1 << (q - 1u) : 0u;
-  uint32_t fraction = (uint32_t)((rest * (uint32_t)powers_of_ten[decimals] + half) >> q);
+  const uint32_t halves = (uint32_t)((rest * (2u * (uint32_t)powers_of_ten[decimals])) >> q);
+  uint32_t fraction = (halves + 1u) / 2u;
   if (fraction >= (uint32_t)powers_of_ten[decimals]) {
     fraction = 0;
     whole++;

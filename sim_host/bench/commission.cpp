@@ -85,7 +85,7 @@ const parameter_info_t& info_of(std::uint16_t id) {
 std::vector<Identified> identified() {
   std::vector<Identified> list;
   for (std::uint16_t k = 0; k < drive_commissioning_count(); k++) {
-    const commissioning_result_t r = drive_commissioning_result(k);
+    const commissioning_result_t& r = *drive_commissioning_result(k);
     const parameter_info_t& info = info_of(r.id);
     Identified row;
     row.name = text_of(parameter_name(&info));

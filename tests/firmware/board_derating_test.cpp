@@ -101,7 +101,7 @@ TEST_F(Derating, WithoutAnotherCurrentTheMotorsRatedOneCounts) {
 
 // Where no rated current is told, half of the limit is what hardly a motor does not bear; status says so.
 TEST_F(Derating, WithoutARatedCurrentHalfOfTheLimitCounts) {
-  parameters_reset();
+  parameters_reset(&parameters);
   ASSERT_EQ(parameters.rated_current, 0) << "nobody has told it";
   parameters.current_limit = raw(9.0, 20);
   use_parameters();

@@ -271,12 +271,12 @@ TEST_F(CommissioningStairs, ResultsAreThereWhenItHasEnded) {
   commissioning_service(&drive);
   EXPECT_EQ(drive_commissioning_outcome(), COMMISSIONING_PARTLY);
   ASSERT_EQ(drive_commissioning_count(), 24);
-  EXPECT_NE(drive_commissioning_result(23).id, 0);
-  EXPECT_EQ(drive_commissioning_result(24).id, 0);
+  EXPECT_NE(drive_commissioning_result(23)->id, 0);
+  EXPECT_EQ(drive_commissioning_result(24), nullptr);
   c.outcome = COMMISSIONING_DONE;
   EXPECT_EQ(drive_commissioning_count(), 24);
   c.outcome = COMMISSIONING_ABORTED;
-  EXPECT_EQ(drive_commissioning_result(0).id, 0);
+  EXPECT_EQ(drive_commissioning_result(0), nullptr);
 }
 
 // Where the rotor is pulled to the frame, up to the limit, whether it shows an axis or not.

@@ -238,7 +238,7 @@ TEST_F(DriveConfig, RandomSetsAreAcceptedConsistentOrRefused) {
   Random random(80);
   int accepted = 0, refused = 0;
   for (int n = 0; n < 9000; ++n) {
-    parameters_reset();
+    parameters_reset(&parameters);
     for (std::uint16_t k = 0; k < parameter_count(); ++k) {
       const parameter_info_t& p = *parameter_info(k);
       ASSERT_EQ(parameter_set(p.id, random_value(random, p, n % 2 == 0)), SET_OK)

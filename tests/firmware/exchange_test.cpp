@@ -30,8 +30,8 @@ class Exchange : public Drive {
   static void spoil_table() {
     for (std::uint16_t k = 0; k < parameter_count(); ++k) {
       const parameter_info_t* const p = parameter_info(k);
-      parameter_write(p->id,
-                      parameter_get(p->id) == parameter_maximum(p) ? parameter_minimum(p) : parameter_maximum(p));
+      std::int32_t& value = *parameter_in_use(p);
+      value = (value == parameter_maximum(p)) ? parameter_minimum(p) : parameter_maximum(p);
     }
   }
 
@@ -224,8 +224,9 @@ TEST_F(Exchange, AQuestionChangesNothing) {
   make_ready();
   background_step(&drive);
   const std::int32_t set = parameters.link_regulation;
-  EXPECT_NE(parameter_conflict_with(kLinkRegulation, parameters.link_maximum), PACKED_NONE);
-  EXPECT_EQ(parameter_conflict_with(kLinkRegulation, set), PACKED_NONE);
+  const parameter_info_t* const regulation = parameter_by_id(kLinkRegulation);
+  EXPECT_NE(parameter_conflict_with(regulation, parameters.link_maximum), PACKED_NONE);
+  EXPECT_EQ(parameter_conflict_with(regulation, set), PACKED_NONE);
   EXPECT_EQ(parameters.link_regulation, set);
   EXPECT_FALSE(inside::reload_requested());
   EXPECT_EQ(parameter_conflict_known(), PACKED_NONE);

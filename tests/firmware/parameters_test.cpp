@@ -147,7 +147,7 @@ TEST_F(Parameters, SetAndGet) {
       EXPECT_TRUE(stillspin::test::inside::reload_requested()) << r.name;
     }
   }
-  parameters_reset();
+  parameters_reset(&parameters);
   for (const Row& r : kRows) EXPECT_NEAR(*r.value, exact(r.initial, r), 0.500001) << r.name;
 }
 
@@ -188,7 +188,7 @@ TEST_F(Parameters, RefusedWhileEnergised) {
     EXPECT_EQ(drive_is_energised(), energised) << state;
     for (const Row& r : kRows) {
       const parameter_info_t* const info = parameter_info(static_cast<std::uint16_t>(&r - kRows.data()));
-      parameters_reset();
+      parameters_reset(&parameters);
       const bool allowed = r.always || !energised;
       EXPECT_EQ(parameter_set(info->id, parameter_minimum(info)), allowed ? SET_OK : SET_RUNNING) << r.name;
       EXPECT_EQ(parameter_get(info->id), allowed ? parameter_minimum(info) : parameter_initial(info)) << r.name;
@@ -198,7 +198,7 @@ TEST_F(Parameters, RefusedWhileEnergised) {
 
 TEST_F(Parameters, AnIdThatThereIsNotWritesNothing) {
   const parameters_t before = parameters;
-  parameter_write(0xFFFF, 1);
+  EXPECT_EQ(parameter_set(0xFFFF, 1), SET_UNKNOWN);
   EXPECT_EQ(std::memcmp(&before, &parameters, sizeof before), 0);
 }
 

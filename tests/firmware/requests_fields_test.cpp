@@ -194,7 +194,7 @@ TEST_F(RequestFields, ResultsOfACommissioningAreToldWhole) {
   const std::uint16_t count = drive_commissioning_count();
   ASSERT_GT(count, 0);
   for (std::uint16_t k = 0; k < count; ++k) {
-    const commissioning_result_t r = drive_commissioning_result(k);
+    const commissioning_result_t& r = *drive_commissioning_result(k);
     EXPECT_EQ(of(ask(REQUEST_COMMISSION_RESULT, little(k, 2))), little(count, 2) + little(r.id, 2) + i32(r.before) +
                                                                     i32(r.value) +
                                                                     Octets{static_cast<std::uint16_t>(r.verdict)});

@@ -305,7 +305,7 @@ TEST_F(Requests, ResultsOfACommissioning) {
   const std::uint16_t count = drive_commissioning_count();
   const Answer last = ask(REQUEST_COMMISSION_RESULT, little(count - 1u, 2));
   EXPECT_EQ(last.number(0, 2), count);
-  EXPECT_EQ(last.number(2, 2), drive_commissioning_result(count - 1u).id);
+  EXPECT_EQ(last.number(2, 2), drive_commissioning_result(count - 1u)->id);
   EXPECT_EQ(last.number(12, 1), static_cast<unsigned>(VERDICT_NOT_MEASURED));
   EXPECT_EQ(ask(REQUEST_COMMISSION_RESULT, little(count, 2)).body(), 2u);
 }

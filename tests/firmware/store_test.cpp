@@ -58,7 +58,7 @@ TEST_F(Store, EveryParameterIsSaved) {
   power_on();
   for (std::uint16_t k = 0; k < parameter_count(); ++k) {
     const parameter_info_t* const info = parameter_info(k);
-    parameters_reset();
+    parameters_reset(&parameters);
     ASSERT_EQ(parameter_set(info->id, parameter_initial(info) == parameter_minimum(info) ? parameter_minimum(info) + 1
                                                                                          : parameter_initial(info) - 1),
               SET_OK);

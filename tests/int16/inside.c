@@ -23,9 +23,9 @@ uint16_t samples_out(int32_t* flat) {
 }
 
 void commissioning_out(uint16_t index, int32_t* flat) {
-  const commissioning_result_t r = drive_commissioning_result(index);
-  flat[0] = (int32_t)r.id;
-  flat[1] = r.before;
-  flat[2] = r.value;
-  flat[3] = (int32_t)r.verdict;
+  const commissioning_result_t* const r = drive_commissioning_result(index);
+  flat[0] = (int32_t)r->id;
+  flat[1] = r->before;
+  flat[2] = r->value;
+  flat[3] = (int32_t)r->verdict;
 }

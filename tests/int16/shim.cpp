@@ -108,10 +108,13 @@ commissioning_phase_t __wrap_drive_commissioning_phase(void) {
 }
 int32_t __wrap_drive_commissioning_progress(void) { return int16_drive_commissioning_progress(); }
 uint16_t __wrap_drive_commissioning_count(void) { return int16_drive_commissioning_count(); }
-commissioning_result_t __wrap_drive_commissioning_result(uint16_t index) {
+const commissioning_result_t* __wrap_drive_commissioning_result(uint16_t index) {
+  static commissioning_result_t result;
   int32_t flat[4];
+  if (index >= int16_drive_commissioning_count()) return nullptr;
   int16_commissioning_out(index, flat);
-  return {static_cast<uint16_t>(flat[0]), flat[1], flat[2], static_cast<commissioning_verdict_t>(flat[3])};
+  result = {static_cast<uint16_t>(flat[0]), flat[1], flat[2], static_cast<commissioning_verdict_t>(flat[3])};
+  return &result;
 }
 
 void __wrap_hal_replay_start(replay_mode_t mode, void (*)(void)) {

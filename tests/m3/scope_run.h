@@ -18,9 +18,9 @@ static inline void scope_run_begin(void) {
       SCOPE_SINGLE,
       SCOPE_RISING,
       SIGNAL_speed,
+      SCOPE_CHANNELS,
       INT32_MAX,
       SCOPE_BY_SPAN,
-      SCOPE_CHANNELS,
       {{SIGNAL_speed, 8}, {SIGNAL_load_torque, 8}, {SIGNAL_current_a, 8}, {SIGNAL_current_b, 8}}};
   (void)scope_setup(&all);
   (void)scope_arm();

@@ -107,8 +107,8 @@ uint32_t drive_time_ms(void) { return any_u32; }
 drive_state_t drive_state(void) { return (drive_state_t)any_up_to(7); }
 
 packed_text_t parameter_conflict(void) { return (packed_text_t)any_up_to((uint16_t)PACKED_NONE); }
-packed_text_t parameter_conflict_with(uint16_t id, int32_t raw) {
-  (void)id;
+packed_text_t parameter_conflict_with(const parameter_info_t* p, int32_t raw) {
+  (void)p;
   (void)raw;
   return parameter_conflict();
 }
@@ -118,10 +118,14 @@ commissioning_outcome_t drive_commissioning_outcome(void) { return (commissionin
 commissioning_phase_t drive_commissioning_phase(void) { return (commissioning_phase_t)any_up_to(6); }
 int32_t drive_commissioning_progress(void) { return any_from(0, 1000); }
 uint16_t drive_commissioning_count(void) { return any_up_to(30); }
-commissioning_result_t drive_commissioning_result(uint16_t index) {
-  const commissioning_result_t r = {any_u16, any_i32, any_i32, (commissioning_verdict_t)any_up_to(7)};
+const commissioning_result_t* drive_commissioning_result(uint16_t index) {
+  static commissioning_result_t r;
   (void)index;
-  return r;
+  r.id = any_u16;
+  r.before = any_i32;
+  r.value = any_i32;
+  r.verdict = (commissioning_verdict_t)any_up_to(7);
+  return any_bool() ? &r : NULL;
 }
 
 static void any_status(void) {

@@ -122,7 +122,10 @@ void commissioning_solve_motion(commissioning_t* c) {
 
 // Within their ranges from the first on: the part configuration reads how they come to what they are.
 parameters_t parameters;
-void parameters_reset(void) { any_parameters(); }
+void parameters_reset(parameters_t* of) {
+  (void)of;
+  any_parameters();
+}
 
 // The constants that features have beside it.
 static void any_parts(void) {

@@ -82,7 +82,7 @@ static void fields(void) {
 
 void prove_node(void) {
   fields();
-  parameters_reset();
+  parameters_reset(&parameters);
   can_node_reset(any_bool() ? any_answer : 0);
   stream_reset();
   while (any_bool()) {

@@ -59,6 +59,7 @@ CONFIGURATION = (
     *("firmware/sources/*/*.c", "firmware/start/if_start/load.c", SOURCES_TABLE, "svpwm/*.c", *ESTIMATORS),
 )
 OCTETS, RECORD, CRC = "firmware/base/octets.c", "firmware/link/record.c", "firmware/base/crc.c"
+CRC_BLOCK = "firmware/base/crc_block.c"
 FRAMES = (
     *("tests/prove/framing.c", "firmware/link/splitter.c", RECORD, "firmware/link/cobs.c", CRC),
     *("firmware/can/segments.c", "hal/qmath/qdiv.c"),
@@ -95,7 +96,7 @@ TERMINAL = tuple(f"firmware/console/{name}.c" for name in ("console", "job", "ed
 
 STORE = (
     *("tests/prove/store.c", "firmware/dictionary/parameters.c", "firmware/text/text.c", "firmware/api/status.c"),
-    *(OCTETS, CRC),
+    *(OCTETS, CRC, CRC_BLOCK),
     *("hal/qmath/qcall.c", "hal/qmath/qdiv.c", "hal/qmath/qquotient.c"),
     *(f"firmware/store/{name}.c" for name in ("reader", "scan", "slot", "store", "values", "writer")),
 )
@@ -272,7 +273,7 @@ PARTS = (
     of_link(
         "requests",
         (
-            *("tests/prove/requests.c", "firmware/link/requests*.c", CRC),
+            *("tests/prove/requests.c", "firmware/link/requests*.c", CRC, CRC_BLOCK),
             *(f"firmware/{folder}/requests.c" for folder in ("scope", "store", "commissioning")),
             *("firmware/hil/*.c", "firmware/base/clear.c", "hal/replay.c", *BESIDE),
         ),
