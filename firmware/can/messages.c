@@ -47,6 +47,10 @@ void can_put(hal_can_frame_t* frame, can_field_t field, int32_t value) {
   }
 }
 
+void can_put_all(hal_can_frame_t* frame, can_field_t first, const int32_t* values, uint16_t count) {
+  for (uint16_t k = 0u; k < count; k++) can_put(frame, (can_field_t)((uint16_t)first + k), values[k]);
+}
+
 int32_t can_get(const hal_can_frame_t* frame, can_field_t field) {
   const can_field_info_t* const f = &can_field_infos[field];
   uint32_t steps = 0uL;
@@ -54,9 +58,8 @@ int32_t can_get(const hal_can_frame_t* frame, can_field_t field) {
     const uint16_t at = (uint16_t)(f->first + k);
     steps |= (uint32_t)(frame->data[at >> 3] >> (at & 7u) & 1u) << k;
   }
-  const bool negative = f->is_signed != 0u && (steps >> (f->bits - 1u) & 1uL) != 0uL;
-  if (negative && f->bits < 32u) steps |= ~(((uint32_t)1u << f->bits) - 1u);
-  return (int32_t)steps;
+  const uint16_t above = (uint16_t)(32u - f->bits);
+  return (f->is_signed != 0u) ? q_shr((int32_t)(steps << above), above) : (int32_t)steps;
 }
 
 int32_t can_steps(can_field_t field, int32_t value, uint16_t q) {

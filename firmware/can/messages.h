@@ -74,6 +74,8 @@ hal_can_frame_t can_frame(can_message_t message, uint16_t node);
 
 /// Writes a field of the frame's message.
 void can_put(hal_can_frame_t* frame, can_field_t field, int32_t value);
+/// Fields one behind the other, from this one on.
+void can_put_all(hal_can_frame_t* frame, can_field_t first, const int32_t* values, uint16_t count);
 int32_t can_get(const hal_can_frame_t* frame, can_field_t field);
 
 /// Steps of the field that a value with q fractional bits (1..24) is, to the nearest.

@@ -135,12 +135,10 @@ can_node_state_t can_node_state(void) {
 static void send_diagnostic(void) {
   const can_node_state_t errors = can_node_state();
   hal_can_frame_t frame = can_frame(CAN_DIAGNOSTIC, self.node);
-  can_put(&frame, CAN_DIAGNOSTIC_BAD_COMMANDS, (int32_t)errors.bad_commands);
-  can_put(&frame, CAN_DIAGNOSTIC_LOST_FRAMES, (int32_t)errors.lost);
-  can_put(&frame, CAN_DIAGNOSTIC_BUS_OFFS, (int32_t)errors.bus.bus_offs);
-  can_put(&frame, CAN_DIAGNOSTIC_RESTARTS, (int32_t)errors.bus.restarts);
-  can_put(&frame, CAN_DIAGNOSTIC_TRANSMIT_ERRORS, (int32_t)errors.bus.transmit_errors);
-  can_put(&frame, CAN_DIAGNOSTIC_RECEIVE_ERRORS, (int32_t)errors.bus.receive_errors);
+  const int32_t counts[] = {errors.bad_commands,        errors.lost,
+                            errors.bus.bus_offs,        errors.bus.restarts,
+                            errors.bus.transmit_errors, errors.bus.receive_errors};
+  can_put_all(&frame, CAN_DIAGNOSTIC_BAD_COMMANDS, counts, sizeof counts / sizeof counts[0]);
   hal_profile_step(CYCLES_MESSAGE);
   (void)hal_can_send(&frame, PRIORITY_TELEMETRY);
 }
@@ -177,10 +175,8 @@ static void answer_parameter(void) {
   const uint16_t id = (uint16_t)can_get(&request, CAN_PARAMETER_REQUEST_ID);
   const answer_status_t result = carry_out(operation, id, can_get(&request, CAN_PARAMETER_REQUEST_RAW));
   hal_can_frame_t response = can_frame(CAN_PARAMETER_RESPONSE, self.node);
-  can_put(&response, CAN_PARAMETER_RESPONSE_OPERATION, operation);
-  can_put(&response, CAN_PARAMETER_RESPONSE_ID, (int32_t)id);
-  can_put(&response, CAN_PARAMETER_RESPONSE_RAW, parameter_get(id));
-  can_put(&response, CAN_PARAMETER_RESPONSE_STATUS, (int32_t)result);
+  const int32_t answers[] = {operation, id, parameter_get(id), (int32_t)result};
+  can_put_all(&response, CAN_PARAMETER_RESPONSE_OPERATION, answers, sizeof answers / sizeof answers[0]);
   hal_profile_step(2u * CYCLES_MESSAGE);
   (void)hal_can_send(&response, PRIORITY_PARAMETER);
 }
@@ -241,11 +237,12 @@ void can_node_service(void) {
   if (own_drive) follow_parameters();
   hal_can_service();
   watch_bus(now_ms);
-  if (hal_can_receive(GROUP_COMMAND, &frame) && own_drive) {
-    can_command_take(&self.command, &frame, now_ms);
-    hal_profile_step(CYCLES_MESSAGE);
+  const bool commanded = hal_can_receive(GROUP_COMMAND, &frame);
+  if (own_drive) {
+    if (commanded) can_command_take(&self.command, &frame, now_ms);
+    if (commanded) hal_profile_step(CYCLES_MESSAGE);
+    can_command_service(&self.command, now_ms);
   }
-  if (own_drive) can_command_service(&self.command, now_ms);
   answer_parameter();
   read_record(now_ms);
   answer_record(now_ms);

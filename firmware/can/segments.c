@@ -8,20 +8,20 @@ void segment_join_reset(segment_joiner_t* j) {
   j->last_ms = 0uL;
 }
 
-static void drop(segment_joiner_t* j) {
+// False, for whoever has a record no more.
+static bool drop(segment_joiner_t* j) {
   j->open = false;
   if (j->dropped < 0xFFFFu) j->dropped++;
+  return false;
 }
 
-static void take(segment_joiner_t* j, const hal_can_frame_t* frame) {
+static bool take(segment_joiner_t* j, const hal_can_frame_t* frame) {
   for (uint16_t k = 1u; k < frame->length; k++) {
-    if (j->count >= RECORD_MAX) {
-      drop(j);
-      return;
-    }
+    if (j->count >= RECORD_MAX) return drop(j);
     j->octets[j->count++] = frame->data[k] & 0xFFu;
   }
   j->next = (uint16_t)((j->next + 1u) & SEGMENT_NUMBER);
+  return true;
 }
 
 bool segment_join(segment_joiner_t* j, const hal_can_frame_t* frame, uint32_t now_ms) {
@@ -29,30 +29,23 @@ bool segment_join(segment_joiner_t* j, const hal_can_frame_t* frame, uint32_t no
   const uint16_t head = frame->data[0];
   j->last_ms = now_ms;
   if ((head & SEGMENT_FIRST) != 0u) {
-    if (j->open) drop(j);
+    if (j->open) (void)drop(j);
     j->open = true;
     j->count = 0u;
     j->next = 0u;
   }
   if (!j->open) return false;
-  if ((head & SEGMENT_NUMBER) != j->next) {
-    drop(j);
-    return false;
-  }
-  take(j, frame);
-  if (!j->open || (head & SEGMENT_LAST) == 0u) return false;
+  if ((head & SEGMENT_NUMBER) != j->next) return drop(j);
+  if (!take(j, frame) || (head & SEGMENT_LAST) == 0u) return false;
   const uint16_t count = record_open(j->octets, j->count);
-  if (count == 0u) {
-    drop(j);
-    return false;
-  }
+  if (count == 0u) return drop(j);
   j->open = false;
   j->count = count;
   return true;
 }
 
 void segment_join_rest(segment_joiner_t* j, uint32_t now_ms) {
-  if (j->open && now_ms - j->last_ms > SEGMENTS_REST_MS) drop(j);
+  if (j->open && now_ms - j->last_ms > SEGMENTS_REST_MS) (void)drop(j);
 }
 
 void segment_split_begin(segment_splitter_t* s, uint16_t count, uint32_t now_ms) {

@@ -4,33 +4,36 @@
 #include "firmware/drive/signals.h"
 #include "firmware/mode/commands.h"
 
-// A value with q fractional bits in steps of its field.
-static void put_steps(hal_can_frame_t* frame, can_field_t field, int32_t value, uint16_t q) {
-  can_put(frame, field, can_steps(field, value, q));
-}
-
 void telemetry_status(hal_can_frame_t* frame, const can_command_t* command, uint16_t alive) {
   const drive_signals_t s = drive_signals();
-  can_put(frame, CAN_STATUS_STATE, s.state);
-  can_put(frame, CAN_STATUS_COMMANDED, command->commanding ? 1 : 0);
-  can_put(frame, CAN_STATUS_TIMED_OUT, command->timed_out ? 1 : 0);
-  can_put(frame, CAN_STATUS_ENERGISED, drive_is_energised() ? 1 : 0);
-  can_put(frame, CAN_STATUS_SPEED_KNOWN, s.speed_known);
-  can_put(frame, CAN_STATUS_FAULT, s.fault);
-  can_put(frame, CAN_STATUS_LIMITS, s.limit);
-  can_put(frame, CAN_STATUS_ALIVE, (int32_t)alive);
-  put_steps(frame, CAN_STATUS_SPEED, s.speed, 16);
-  put_steps(frame, CAN_STATUS_REFERENCE, s.speed_reference, 16);
+  const int32_t values[] = {s.state,
+                            command->commanding ? 1 : 0,
+                            command->timed_out ? 1 : 0,
+                            drive_is_energised() ? 1 : 0,
+                            s.speed_known,
+                            s.fault,
+                            s.limit,
+                            alive,
+                            can_steps(CAN_STATUS_SPEED, s.speed, 16),
+                            can_steps(CAN_STATUS_REFERENCE, s.speed_reference, 16)};
+  can_put_all(frame, CAN_STATUS_STATE, values, sizeof values / sizeof values[0]);
 }
 
+// What the fields of both messages have, in their order.
+static const uint16_t sent[] = {SIGNAL_PLACE(current_d),           SIGNAL_PLACE(current_q),
+                                SIGNAL_PLACE(link_voltage),        SIGNAL_PLACE(load_torque),
+                                SIGNAL_PLACE(current_d_reference), SIGNAL_PLACE(current_q_reference),
+                                SIGNAL_PLACE(voltage_d),           SIGNAL_PLACE(voltage_q)};
+
+#define VALUES (sizeof sent / sizeof sent[0])
+
 void telemetry_values(hal_can_frame_t* first, hal_can_frame_t* second) {
-  const drive_signals_t s = drive_signals();
-  put_steps(first, CAN_TELEMETRY_1_CURRENT_D, s.current_d, 20);
-  put_steps(first, CAN_TELEMETRY_1_CURRENT_Q, s.current_q, 20);
-  put_steps(first, CAN_TELEMETRY_1_LINK_VOLTAGE, s.link_voltage, 16);
-  put_steps(first, CAN_TELEMETRY_1_LOAD_TORQUE, s.load_torque, 16);
-  put_steps(second, CAN_TELEMETRY_2_CURRENT_D_REFERENCE, s.current_d_reference, 20);
-  put_steps(second, CAN_TELEMETRY_2_CURRENT_Q_REFERENCE, s.current_q_reference, 20);
-  put_steps(second, CAN_TELEMETRY_2_VOLTAGE_D, s.voltage_d, 16);
-  put_steps(second, CAN_TELEMETRY_2_VOLTAGE_Q, s.voltage_q, 16);
+  int32_t values[VALUES];
+  (void)drive_signals_copy(sent, VALUES, values);
+  for (uint16_t k = 0; k < VALUES; k++) {
+    const can_field_t field = (can_field_t)(CAN_TELEMETRY_1_CURRENT_D + k);
+    values[k] = can_steps(field, values[k], signal_info(sent[k])->q);
+  }
+  can_put_all(first, CAN_TELEMETRY_1_CURRENT_D, values, VALUES / 2u);
+  can_put_all(second, CAN_TELEMETRY_2_CURRENT_D_REFERENCE, &values[VALUES / 2u], VALUES / 2u);
 }

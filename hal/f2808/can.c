@@ -62,19 +62,15 @@ static bool find_timing(uint32_t bitrate, uint32_t* timing) {
 }
 
 static bool share_mailboxes(const hal_can_group_t* groups, uint16_t group_count) {
-  uint16_t next = HAL_CAN_MAILBOXES;
+  uint16_t left = HAL_CAN_MAILBOXES;
   if (group_count > HAL_CAN_GROUPS_MAX) return false;
   can.transmit_mailboxes = ALL_MAILBOXES;
   for (uint16_t g = 0u; g < group_count; g++) {
-    if (groups[g].mailboxes == 0u || groups[g].mailboxes >= next) return false;
+    if (groups[g].mailboxes == 0u || groups[g].mailboxes >= left) return false;
+    left = (uint16_t)(left - groups[g].mailboxes);
     can.groups[g] = groups[g];
-    can.group_mailboxes[g] = 0uL;
-    const uint16_t end = (uint16_t)(next - groups[g].mailboxes);
-    while (next > end) {
-      next--;
-      can.group_mailboxes[g] |= bit_of(next);
-    }
-    can.transmit_mailboxes &= ~can.group_mailboxes[g];
+    can.group_mailboxes[g] = can.transmit_mailboxes & ~(bit_of(left) - 1u);
+    can.transmit_mailboxes = bit_of(left) - 1u;
   }
   can.group_count = group_count;
   return true;
@@ -106,8 +102,8 @@ bool hal_can_init(uint32_t bitrate, const hal_can_group_t* groups, uint16_t grou
   can.bus_off = false;
   can.lost = can.bus_offs = can.restarts = 0u;
   forget_waiting();
-  gpio_give_to_peripheral(BOARD_PIN_CAN_RECEIVE, GPIO_MUX_FIRST, GPIO_QUALIFY_NONE, true);
-  gpio_give_to_peripheral(BOARD_PIN_CAN_TRANSMIT, GPIO_MUX_FIRST, GPIO_QUALIFY_NONE, true);
+  gpio_connect(BOARD_PIN_CAN_RECEIVE);
+  gpio_connect(BOARD_PIN_CAN_TRANSMIT);
   write_protected(REG_CANTIOC, CANTIOC_TXFUNC_MASK);
   write_protected(REG_CANRIOC, CANRIOC_RXFUNC_MASK);
   request_configuration();

@@ -20,7 +20,7 @@ void hal_digital_io_brake(bool on) { gpio_write(BOARD_PIN_BRAKE, on == (BOARD_BR
 
 // The legs alone: the witness tells the comparator's trips from all others.
 void hal_digital_io_wire_emergency(void) {
-  gpio_give_to_peripheral(BOARD_PIN_EMERGENCY, GPIO_MUX_FIRST, GPIO_QUALIFY_NONE, true);
+  gpio_connect(BOARD_PIN_EMERGENCY);
   target_eallow();
   for (uint16_t leg = 0u; leg < HAL_PWM_LEGS; leg++) {
     const uint32_t select = EPWM_BASE(PWM_FIRST_LEG_MODULE + leg) + EPWM_TZSEL;

@@ -33,6 +33,8 @@ void gpio_give_to_peripheral(uint16_t pin, uint16_t mux, uint16_t qualification,
   target_edis();
 }
 
+void gpio_connect(uint16_t pin) { gpio_give_to_peripheral(pin, GPIO_MUX_FIRST, GPIO_QUALIFY_NONE, true); }
+
 void gpio_make_output(uint16_t pin, bool level) {
   gpio_write(pin, level);
   target_eallow();

@@ -13,6 +13,9 @@
 // Gives the pin (0..34) to a peripheral, as the last of its settings. mux: 1..3; qualification: GPIO_QUALIFY_x.
 void gpio_give_to_peripheral(uint16_t pin, uint16_t mux, uint16_t qualification, bool pull_up);
 
+// The same as most pins want it: their first peripheral, asynchronous, pulled up.
+void gpio_connect(uint16_t pin);
+
 // Makes the pin an output that starts with the given level.
 void gpio_make_output(uint16_t pin, bool level);
 

@@ -19,6 +19,7 @@
 #define STANDSTILL_CYCLES (10000uL * HAL_TIME_CYCLES_PER_US)
 #define HALF_CLOCK_CYCLES (10uL * HAL_TIME_CYCLES_PER_US)
 #define CLEAR_CLOCKS 9u
+#define STOP_EDGE (2u * CLEAR_CLOCKS)
 
 #define MODE_ON (I2C_MDR_IRS_MASK | I2C_MDR_FREE_MASK)
 #define MODE_START ((uint16_t)(MODE_ON | I2C_MDR_STT_MASK | I2C_MDR_MST_MASK))
@@ -58,8 +59,8 @@ static void start_module(void) {
 }
 
 static void give_pins_to_module(void) {
-  gpio_give_to_peripheral(BOARD_PIN_SDA, GPIO_MUX_FIRST, GPIO_QUALIFY_NONE, true);
-  gpio_give_to_peripheral(BOARD_PIN_SCL, GPIO_MUX_FIRST, GPIO_QUALIFY_NONE, true);
+  gpio_connect(BOARD_PIN_SDA);
+  gpio_connect(BOARD_PIN_SCL);
 }
 
 void i2c_init(void) {
@@ -181,32 +182,23 @@ static i2c_result_t end_clear(i2c_result_t result) {
 }
 
 // Clocks until the device has let SDA go: it takes the high SDA for a missing acknowledge. Then a stop, which is a rise
-// of SDA while SCL is high. Edges 0, 2, .. pull SCL low, 1, 3, .. let it go.
+// of SDA while SCL is high. Edges 0, 2, .. pull SCL low, 1, 3, .. let it go; those of the stop pull SCL low, SDA low,
+// and let them go in that order.
 i2c_result_t i2c_clear_step(void) {
   if (hal_time_cycles() - self.clear_at < HALF_CLOCK_CYCLES) return I2C_BUSY;
   self.clear_at = hal_time_cycles();
   const uint16_t edge = self.clear_edge++;
-  if (edge < 2u * CLEAR_CLOCKS) {
-    const bool high = (edge & 1u) != 0u;
-    gpio_pull_low(BOARD_PIN_SCL, !high);
-    if (high && gpio_read(BOARD_PIN_SDA)) self.clear_edge = 2u * CLEAR_CLOCKS;
+  const bool odd = (edge & 1u) != 0u;
+  if (edge < STOP_EDGE) {
+    gpio_pull_low(BOARD_PIN_SCL, !odd);
+    if (odd && gpio_read(BOARD_PIN_SDA)) self.clear_edge = STOP_EDGE;
     return I2C_BUSY;
   }
-  switch (edge - 2u * CLEAR_CLOCKS) {
-    case 0:
-      if (!i2c_lines_free()) return end_clear(I2C_STUCK);
-      gpio_pull_low(BOARD_PIN_SCL, true);
-      return I2C_BUSY;
-    case 1:
-      gpio_pull_low(BOARD_PIN_SDA, true);
-      return I2C_BUSY;
-    case 2:
-      gpio_pull_low(BOARD_PIN_SCL, false);
-      return I2C_BUSY;
-    case 3:
-      gpio_pull_low(BOARD_PIN_SDA, false);
-      return I2C_BUSY;
-    default:
-      return end_clear(i2c_lines_free() ? I2C_DONE : I2C_STUCK);
+  const bool over = edge == STOP_EDGE + 4u;
+  if (edge == STOP_EDGE || over) {
+    const bool is_free = i2c_lines_free();
+    if (over || !is_free) return end_clear(is_free ? I2C_DONE : I2C_STUCK);
   }
+  gpio_pull_low(odd ? BOARD_PIN_SDA : BOARD_PIN_SCL, edge < STOP_EDGE + 2u);
+  return I2C_BUSY;
 }

@@ -15,7 +15,7 @@ void hal_safety_init(void) {
   gpio_make_output(BOARD_PIN_GATE_ENABLE, false);
   gpio_make_output(BOARD_PIN_FAULT_LAMP, BOARD_LAMP_ON_LEVEL == 0u);
   // Asynchronous: the trip must also work when the clock has stopped, and not wait for samples.
-  gpio_give_to_peripheral(BOARD_PIN_OVER_CURRENT, GPIO_MUX_FIRST, GPIO_QUALIFY_NONE, true);
+  gpio_connect(BOARD_PIN_OVER_CURRENT);
   target_eallow();
   for (uint16_t module = PWM_FIRST_LEG_MODULE; module < PWM_FIRST_LEG_MODULE + HAL_PWM_LEGS; module++) {
     target_write16(EPWM_BASE(module) + EPWM_TZSEL, TRIP_BY_COMPARATOR);

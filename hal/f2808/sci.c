@@ -55,8 +55,8 @@ static bool divider_for(uint32_t baud, uint16_t* divider) {
 }
 
 static void connect_pins(void) {
-  gpio_give_to_peripheral(BOARD_PIN_SERIAL_IN, GPIO_MUX_FIRST, GPIO_QUALIFY_NONE, true);
-  gpio_give_to_peripheral(BOARD_PIN_SERIAL_OUT, GPIO_MUX_FIRST, GPIO_QUALIFY_NONE, true);
+  gpio_connect(BOARD_PIN_SERIAL_IN);
+  gpio_connect(BOARD_PIN_SERIAL_OUT);
 }
 
 static void forget(void) {
