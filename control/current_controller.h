@@ -1,11 +1,13 @@
 // Current control in the rotor frame: two PI controllers with bandwidth a (Kp = a L) and the integrator's corner at
-// a/4, the rotational voltages fed forward and anti-windup from the voltage that the modulator really gives.
+// a/4 or R/L, whichever is higher, the rotational voltages fed forward and anti-windup from the voltage that the
+// modulator really gives.
 //
-// The corner is not the machine's own R/L, as internal-model control has it: what the dead time leaves over is a
-// voltage disturbance that turns with the current, and with R/L it would decay in L/R, about 20 ms, far too slow for
-// the speed loop. The measurement is taken over the last period and the voltage acts in the middle of the next but one:
-// two periods of delay. a = 1800 rad/s leaves about 55 degrees of phase margin at 10 kHz; more than 2600 rad/s is
-// refused.
+// The corner is not always the machine's own R/L, as internal-model control has it: what the dead time leaves over is a
+// voltage disturbance that turns with the current, and with R/L it would decay in L/R, 15 ms on motor A, far too slow
+// for the speed loop. A small motor's R/L is above a/4 (5000 rad/s): with a/4 its current would follow by
+// a/4 K_p/(R + K_p) only. The measurement is taken over the last period and the voltage acts in the middle of the next
+// but one: two periods of delay. a = 1800 rad/s leaves about 55 degrees of phase margin at 10 kHz; more than 2600 rad/s
+// is refused.
 //
 // The controllers may step every n-th period only, the voltage still acting from the next reload on; holding it for n
 // periods adds (n - 1)/2 periods of delay, and the largest bandwidth falls in proportion. Seed paper B steps at 5 kHz
@@ -34,13 +36,13 @@ typedef struct {
   pi_state_t d, q;
 } current_controller_t;
 
-typedef enum { CURRENT_CORNER_QUARTER = 0, CURRENT_CORNER_MACHINE = 1 } current_corner_t;
+typedef enum { CURRENT_CORNER_HIGHER = 0, CURRENT_CORNER_MACHINE = 1 } current_corner_t;
 
 typedef struct {
   int32_t bandwidth_rads;   // a, 100..2600 at a step in every period of 100 us, to 2080 at every other
   int32_t period_us;        // PWM period
   int32_t divider;          // n: periods per step, 1..2
-  current_corner_t corner;  // of the integrator: a/4, or R/L of the machine
+  current_corner_t corner;  // of the integrator: a/4, or R/L of the machine where that is higher; or R/L
 } current_design_t;
 
 /// Derives the gains.

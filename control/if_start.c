@@ -34,52 +34,17 @@ bool if_start_design(if_start_config_t* c, const machine_model_t* m) {
   return q_in_range(c->damping_periods, 10, 10000);
 }
 
-static uint32_t quarter_turn_on(uint32_t angle_bam, bool forward) {
-  return forward ? angle_bam + ANGLE_BAM_QUARTER_TURN : angle_bam - ANGLE_BAM_QUARTER_TURN;
-}
-
 void if_start_begin(if_start_t* s, const if_start_config_t* c, uint32_t angle_bam, bool backward) {
   static const if_start_t fresh = {0};
   *s = fresh;
   s->end_bpp = backward ? -c->speed_bpp : c->speed_bpp;
-  s->vector_bam = quarter_turn_on(angle_bam, backward);
+  s->vector_bam = backward ? angle_bam + ANGLE_BAM_QUARTER_TURN : angle_bam - ANGLE_BAM_QUARTER_TURN;
   s->angle_bam = s->vector_bam;
-}
-
-void if_start_begin_turning(if_start_t* s, const if_start_config_t* c, uint32_t angle_bam, int32_t current_q20,
-                            int32_t speed_bpp) {
-  if_start_begin(s, c, angle_bam, speed_bpp < 0);
-  s->took_over = true;
-  s->vector_bam = angle_bam;
-  s->angle_bam = angle_bam;
-  s->current_q20 = current_q20;
-  s->tick = c->align_periods;
-  s->speed_bpp = speed_bpp;
-  s->rotor_bpp = speed_bpp;
-  s->mean_bpp = speed_bpp;
-}
-
-void if_start_turn_to(if_start_t* s, const if_start_config_t* c, int32_t target_bpp) {
-  s->end_bpp = q_limit(target_bpp, c->speed_bpp);
-}
-
-// At rest it points a quarter turn behind first: a rotor that is half a turn away from one of them is not from the
-// other.
-static void step_vector(if_start_t* s, const if_start_config_t* c) {
-  const int32_t half = c->align_periods / 2;
-  if (s->tick < half) s->current_q20 = c->current_q20 / half * s->tick;
-  if (s->tick == half) {
-    s->current_q20 = c->current_q20;
-    s->vector_bam = quarter_turn_on(s->vector_bam, s->end_bpp >= 0);
-  }
-  if (s->tick < c->align_periods) return;
-  s->speed_bpp = q_clamp(s->end_bpp, s->speed_bpp - c->step_bpp, s->speed_bpp + c->step_bpp);
-  s->vector_bam += (uint32_t)s->speed_bpp;
 }
 
 // The EMF's own mean direction: along it is, to first order, the rotor's speed alone, whatever the lag. Near standstill
 // it is that of no lag. A vector that begins to turn the other way turns the EMF over.
-static void renew_direction(if_start_t* s, const if_start_config_t* c) {
+static void renew(if_start_t* s, const if_start_config_t* c) {
   const int16_t sign = (s->speed_bpp < 0) ? -1 : 1;
   if (sign != s->sign) {
     s->mean_q16.d = -s->mean_q16.d;
@@ -91,11 +56,48 @@ static void renew_direction(if_start_t* s, const if_start_config_t* c) {
   const int32_t length = q_hypot(d, q);
   s->per_emf_q4.d = qc_mul(q_div(d, length, 30), c->per_emf_q4, 30);
   s->per_emf_q4.q = qc_mul(q_div(q, length, 30), c->per_emf_q4, 30);
+  s->drop_q16 = qc_mul_sat(c->resistance_q24, s->current_q20, 28);
+}
+
+void if_start_begin_turning(if_start_t* s, const if_start_config_t* c, uint32_t angle_bam, uint32_t ahead_bam,
+                            int32_t current_q20, int32_t speed_bpp) {
+  if_start_begin(s, c, angle_bam, speed_bpp < 0);
+  s->took_over = true;
+  s->vector_bam = angle_bam + ahead_bam;
+  s->angle_bam = s->vector_bam;
+  s->current_q20 = current_q20;
+  s->tick = c->align_periods;
+  s->speed_bpp = speed_bpp;
+  s->rotor_bpp = speed_bpp;
+  s->mean_bpp = speed_bpp;
+  s->sign = (speed_bpp < 0) ? -1 : 1;
+  const dq_t emf_q16 = {0, q_div(speed_bpp, c->per_emf_q4, 20)};
+  s->mean_q16 = frame_moved(emf_q16, ahead_bam);
+  renew(s, c);
+}
+
+void if_start_turn_to(if_start_t* s, const if_start_config_t* c, int32_t target_bpp) {
+  s->end_bpp = q_limit(target_bpp, c->speed_bpp);
+}
+
+// At rest it points a quarter turn behind first: a rotor that is half a turn away from one of them is not from the
+// other. It is led there, and does not swing as it would behind a jump.
+static void step_vector(if_start_t* s, const if_start_config_t* c) {
+  const int32_t half = c->align_periods / 2;
+  const int32_t lead = half / 2;
+  if (s->tick < half) s->current_q20 = c->current_q20 / half * s->tick;
+  if (s->tick == half) s->current_q20 = c->current_q20;
+  if (s->tick >= half && s->tick < half + lead) {
+    const int32_t step = (int32_t)ANGLE_BAM_QUARTER_TURN / lead;
+    s->vector_bam += (uint32_t)((s->end_bpp < 0) ? -step : step);
+  }
+  if (s->tick < c->align_periods) return;
+  s->speed_bpp = q_clamp(s->end_bpp, s->speed_bpp - c->step_bpp, s->speed_bpp + c->step_bpp);
+  s->vector_bam += (uint32_t)s->speed_bpp;
 }
 
 void if_start_renew(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
-  renew_direction(s, c);
-  s->drop_q16 = qc_mul_sat(c->resistance_q24, s->current_q20, 28);
+  renew(s, c);
   if (!s->took_over || if_start_is_up(s, c)) return;
   const int32_t across_q16 = q_max(qc_abs_sat(qc_sub_sat(voltage_q16.d, s->drop_q16)), qc_abs_sat(voltage_q16.q));
   s->waited = (across_q16 / AWAY_SHARE > c->least_q16) ? q_min(s->waited, 0) - 1 : 0;

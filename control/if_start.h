@@ -66,10 +66,10 @@ bool if_start_design(if_start_config_t* c, const machine_model_t* m);
 /// angle_bam: where the vector points when it begins to turn.
 void if_start_begin(if_start_t* s, const if_start_config_t* c, uint32_t angle_bam, bool backward);
 
-/// The vector takes over a rotor that turns. angle_bam: where it points; current_q20: its length; speed_bpp: of the
-/// rotor.
-void if_start_begin_turning(if_start_t* s, const if_start_config_t* c, uint32_t angle_bam, int32_t current_q20,
-                            int32_t speed_bpp);
+/// The vector takes over a rotor that turns. angle_bam, speed_bpp: of the rotor; ahead_bam: of it the vector, which is
+/// current_q20 long.
+void if_start_begin_turning(if_start_t* s, const if_start_config_t* c, uint32_t angle_bam, uint32_t ahead_bam,
+                            int32_t current_q20, int32_t speed_bpp);
 
 /// A vector that took over a rotor turns it as it is commanded, or as fast as the source takes it back.
 void if_start_turn_to(if_start_t* s, const if_start_config_t* c, int32_t target_bpp);

@@ -2,6 +2,8 @@
 
 #include "hal/qmath/qcall.h"
 
+#define WEAK 8  // of Y0: next to no saliency may be as much, of either sign
+
 typedef struct {
   int32_t mean_q30, half_q30;
 } inverse_inductance_t;
@@ -16,8 +18,9 @@ static inverse_inductance_t nominal(const machine_model_t* m) {
 static void trim(machine_model_t* m, const inverse_inductance_t* y, int32_t mean_q30, int32_t half_q30) {
   const int32_t mean = q_clamp(mean_q30, -y->mean_q30 / 4, y->mean_q30 / 2);
   // Both inverse inductances stay positive, whatever the windows say.
-  const int32_t half_max = q_min(2 * y->half_q30, (y->mean_q30 + mean) / 10 * 9);
-  const int32_t half_min = q_min(y->half_q30 / 3, half_max);
+  const int32_t weak = y->mean_q30 / WEAK;
+  const int32_t half_max = q_min(q_max(2 * y->half_q30, weak), (y->mean_q30 + mean) / 10 * 9);
+  const int32_t half_min = inverse_inductance_is_weak(m) ? -weak : q_min(y->half_q30 / 3, half_max);
   machine_model_trim(m, mean, q_clamp(half_q30, half_min - y->half_q30, half_max - y->half_q30));
 }
 

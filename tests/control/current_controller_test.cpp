@@ -13,7 +13,7 @@ namespace {
 using namespace stillspin::test;
 
 current_controller_config_t designed(const machine_model_t& m, std::int32_t bandwidth, int divider = 1,
-                                     current_corner_t corner = CURRENT_CORNER_QUARTER) {
+                                     current_corner_t corner = CURRENT_CORNER_HIGHER) {
   const current_design_t design = {bandwidth, 100, divider, corner};
   current_controller_config_t c;
   current_controller_design(&c, &m, &design);
@@ -34,11 +34,12 @@ TEST(CurrentController, Gains) {
     const double inductances[] = {motor.ld, motor.lq};
     for (int axis = 0; axis < 2; ++axis) {
       const double kp = bandwidth * inductances[axis];
-      const double ki = kp * bandwidth * kPeriod / 4.0;  // corner at a quarter of the bandwidth
+      const double corner = std::min(std::max(bandwidth / 4.0, motor.rs / inductances[axis]) * kPeriod, 0.5);
       // L is stored with 2^-31 H, 3e-6 of 0.3 mH at worst once multiplied by the bandwidth, and the result with 2^-21
       ASSERT_NEAR(real(axes[axis]->kp_q20, 20), kp, 2e-6 + bandwidth * std::ldexp(1.0, -30));
-      ASSERT_NEAR(real(axes[axis]->corner_q32, 32), ki / kp, 1e-9);
-      ASSERT_NEAR(real(axes[axis]->release_q20, 20), 4.0 * ki / kp, 4e-6);
+      // and R/L with both
+      ASSERT_NEAR(real(axes[axis]->corner_q32, 32), corner, 1e-9 + (4e-6 + 5e-7 / kp) * corner);
+      ASSERT_NEAR(real(axes[axis]->release_q20, 20), std::min(4.0 * corner, 1.0), 2e-5);
     }
   }
 }

@@ -17,7 +17,7 @@ namespace stillspin::test {
 namespace {
 
 constexpr double kCurrent = 8.0;  // A
-constexpr current_design_t kDesign = {1800, 100, 1, CURRENT_CORNER_QUARTER};
+constexpr current_design_t kDesign = {1800, 100, 1, CURRENT_CORNER_HIGHER};
 
 struct Quiet {
   double shift = 0.0;    // farthest that the damping turns the vector over the last 100 ms, degrees

@@ -114,6 +114,21 @@ TEST(InverseInductance, StaysWithinItsBounds) {
   EXPECT_GT(c.half_q30(), half);
 }
 
+// One inductance is told, and the iron makes two of it: the difference is learnt, of either sign, up to an eighth.
+TEST(InverseInductance, NextToNoSaliencyMayTurnOver) {
+  Motor round;
+  round.lq = round.ld;
+  const machine_model_t nominal = model_of(round);
+  for (const double turned : {-1.0, 1.0}) {
+    machine_model_t m = nominal;
+    const regression_t seen = {10000000, 0, static_cast<std::int32_t>(turned * 1000000), 0, 0, 1000000, {0, 0}};
+    inverse_inductance_step(&m, &seen, per_spread(seen), kShare);
+    EXPECT_GT(turned * m.trim.half_q30, 0);
+    for (int n = 0; n < 2000; ++n) inverse_inductance_step(&m, &seen, per_spread(seen), kShare);
+    EXPECT_EQ(m.trim.half_q30, static_cast<std::int32_t>(turned) * (nominal.yd_q30 / 8));
+  }
+}
+
 TEST(InverseInductance, NothingIsLearntFromOneVectorOrWithoutAShare) {
   machine_model_t m = model_of(Motor{});
   const regression_t blind = {1000, 1000000, 1000000, 0, 0, 0, {0, 0}};

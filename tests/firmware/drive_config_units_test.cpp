@@ -117,7 +117,7 @@ TEST_F(Units, CurrentControl) {
       parameters.current_corner = corner;
       const drive_config_t& c = made();
       const current_design_t design = {1500, 100, divider,
-                                       corner == 1 ? CURRENT_CORNER_MACHINE : CURRENT_CORNER_QUARTER};
+                                       corner == 1 ? CURRENT_CORNER_MACHINE : CURRENT_CORNER_HIGHER};
       current_controller_config_t wanted = {};
       current_controller_design(&wanted, &c.nameplate, &design);
       EXPECT_EQ(std::memcmp(&wanted.d, &c.current.d, sizeof wanted.d), 0) << divider << corner;

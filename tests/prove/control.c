@@ -108,7 +108,8 @@ static void turn_vector(int32_t periods) {
   if (!if_start_design(&c, &model)) return;
   if_start_begin(&s, &c, any_u32, any_bool());
   if (any_bool())
-    if_start_begin_turning(&s, &c, any_u32, any_from(0, 100 * AMPERES_Q20), any_from(-TURN_MAX_BPP, TURN_MAX_BPP));
+    if_start_begin_turning(&s, &c, any_u32, any_u32, any_from(0, 100 * AMPERES_Q20),
+                           any_from(-TURN_MAX_BPP, TURN_MAX_BPP));
   if (any_bool()) any_vector(&s, &c);
   if (any_bool()) if_start_renew(&s, &c, any_dq(TURN_COMMAND_END_Q16));
   if (if_start_step(&s, &c, any_dq(TURN_COMMAND_END_Q16), any_u32, any_speed()) != IF_START_PENDING) return;

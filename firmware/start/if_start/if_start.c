@@ -19,6 +19,7 @@
 #include "firmware/mode/mode.h"
 #include "hal/qmath/qcall.h"
 #include "hal/qmath/qtrig.h"
+#include "svpwm/ripple.h"
 
 #define BAM_PER_RAD 683565276L  // the sine for its angle: at a half, the most, 29 degrees for 30
 
@@ -91,14 +92,25 @@ static void take_over(drive_t* d) {
   d->flags.spins = behind == DRIVE_COMMISSION;
 }
 
-// A winding at rest has no EMF: what the vector's voltage is more than expected is its resistance, cold or warm. Where
-// the rotor is seen by its EMF alone, its speed is known by that. It has to be known what devices and dead time take:
-// sensors that are matched say that a commissioning has measured them all.
+// The current is controlled at the periods' ends: in the mean of the two periods that take turns the ripple is more.
+static int32_t mean_length_q20(const drive_t* d) {
+  const drive_modulation_t* const m = &d->modulation;
+  const ab_t one = svpwm_mean_ripple_q16(&m->patterns[0].pulses, d->samples.link_q16);
+  const ab_t other = svpwm_mean_ripple_q16(&m->patterns[1].pulses, d->samples.link_q16);
+  const ab_t both = {one.alpha + other.alpha, one.beta + other.beta};
+  return if_ramp.current_q20 + qc_mul(frame_turned(both, if_ramp.angle_bam).d, d->estimate.model.yd_q30, 27);
+}
+
+// A winding at rest has no EMF: the vector's voltage is that of the resistance, cold or warm. Where the rotor is seen
+// by its EMF alone, its speed is known by that. It has to be known what devices and dead time take: sensors that are
+// matched say that a commissioning has measured them all.
 static void take_resistance(drive_t* d) {
   const int32_t left = if_ramp_config.align_periods - if_ramp.tick;
   const bool measures = if_is_blind && d->config.sensor_mismatch_q30 != 0;
   if (!measures || left <= 0 || left > (int32_t)DRIVE_PERIODS_PER_MS) return;
-  voltage_match_resistance(&d->estimate.model, q_div(if_ramp.mean_q16.d, if_ramp.current_q20, 28));
+  const int32_t voltage_q16 = qc_add_sat(if_ramp.mean_q16.d, if_ramp.drop_q16);
+  machine_model_t* const m = &d->estimate.model;
+  voltage_match_resistance(m, q_div(voltage_q16, mean_length_q20(d), 28) - m->rs_q24);
 }
 
 static start_phase_t step_if_ramp(drive_t* d) {
@@ -136,7 +148,7 @@ static void take_rotor(drive_t* d) {
   const int32_t length_q20 = q_clamp(2 * qc_abs_sat(q_q20), if_ramp_config.current_q20, limit_q20);
   const uint32_t ahead_bam = (uint32_t)qc_mul_sat(q_div(q_q20, length_q20, 24), BAM_PER_RAD, 24);
   turn_controllers(&d->control.current, ahead_bam);
-  if_start_begin_turning(&if_ramp, &if_ramp_config, now->angle_bam + ahead_bam, length_q20, now->speed_bpp);
+  if_start_begin_turning(&if_ramp, &if_ramp_config, now->angle_bam, ahead_bam, length_q20, now->speed_bpp);
   if_start_turn_to(&if_ramp, &if_ramp_config, d->control.target_bpp);
   position_turn(&d->estimate, ahead_bam);
   d->control.references.current_q20.d = length_q20;

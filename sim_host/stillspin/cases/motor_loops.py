@@ -23,16 +23,16 @@ def current(motor: Described) -> Finding:
     limit = motor.told("current_limit")
     knee = 2.0 * motor.plant("machine", "rated_peak_current") if motor.plant("machine", "saturation") else math.inf
     real = told * (1.0 + (limit / knee) ** 2)  # the plant's Lqq is Lq / (1 + (iq / 2 rated)^2)
-    corner = told / 4.0
-    if motor.told("current_corner") == _MACHINE_CORNER:
-        corner = motor.plant("machine", "resistance") / motor.plant("machine", "inductance_d")
-    margin = 90.0 - math.degrees(real * delay + math.atan(corner / real))
+    pole = motor.plant("machine", "resistance") / motor.plant("machine", "inductance_d")
+    corner = pole if motor.told("current_corner") == _MACHINE_CORNER else max(told / 4.0, pole)
+    turned = math.atan(corner / real) - math.atan(pole / real)
+    margin = 90.0 - math.degrees(real * delay + turned)
     words = (
         f"current_bandwidth {told:.0f} rad/s is {real:.0f} rad/s at {limit:.3g} A; the voltage acts"
         f" {1e6 * delay:.0f} µs behind the sample: {margin:.0f}° of phase are left, {_MARGIN_LEAST:.0f}° are needed"
     )
     if margin < _MARGIN_LEAST:
-        most = told * math.radians(90.0 - _MARGIN_LEAST - math.degrees(math.atan(corner / real))) / (real * delay)
+        most = told * math.radians(90.0 - _MARGIN_LEAST - math.degrees(turned)) / (real * delay)
         return Finding("current loop", False, f"{words}: lower current_bandwidth to {most:.0f} rad/s")
     return Finding("current loop", True, words)
 

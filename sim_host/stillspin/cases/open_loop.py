@@ -21,6 +21,7 @@ _AGREES = 0.3  # s that the position source has to agree with the vector before 
 _SPEEDS = (10.0, 6000.0)  # rpm, that the parameter takes
 _SPIN = (30.0, 20000.0)
 _RAMP_MOST = 3000.0  # rpm/s, the drive's default
+_ADAPT_TIME = 50.0  # ms: a load saturates the iron as fast as it falls on the shaft, and no map says by how much
 
 
 def share(inductance_d: float, inductance_q: float) -> float:
@@ -79,6 +80,7 @@ def following(told: Mapping[str, float], volts: float) -> dict[str, float]:
         "if_acceleration": float(max(round(slope), 10)),
         "spin_speed": float(round(spin)),
         "speed_ramp": float(max(round(ramp), 10)),
+        "adapt_time": _ADAPT_TIME,
     }
 
 
