@@ -14,7 +14,7 @@ static pi_config_t design_axis(const machine_model_t* m, int32_t inductance_q30,
   c.kp_q20 = qc_mul(inductance_q30, d->bandwidth_rads, 10);
   const int32_t quarter_q30 = q_div(step_millionths, MICRO * RESET_RATIO, 30);
   // R a T of a L.
-  int32_t corner_q30 = q_div(qc_mul_sat(m->nominal_rs_q24, q_div(step_millionths, MICRO, 24), 28), c.kp_q20, 30);
+  int32_t corner_q30 = q_div(qc_mul_sat(m->nominal_rs_q24, quarter_q30, 28), c.kp_q20, 26);
   if (d->corner != CURRENT_CORNER_MACHINE) corner_q30 = q_max(corner_q30, quarter_q30);
   c.corner_q32 = 4 * q_limit(corner_q30, HALF_Q30 - 1);
   c.release_q20 = 4 * q_min(q_shr(c.corner_q32, 12), ONE_Q20 / 4);

@@ -46,11 +46,11 @@ void if_start_begin(if_start_t* s, const if_start_config_t* c, uint32_t angle_ba
 // it is that of no lag. A vector that begins to turn the other way turns the EMF over.
 static void renew(if_start_t* s, const if_start_config_t* c) {
   const int16_t sign = (s->speed_bpp < 0) ? -1 : 1;
-  if (sign != s->sign) {
+  if (sign + s->sign == 0) {
     s->mean_q16.d = -s->mean_q16.d;
     s->mean_q16.q = -s->mean_q16.q;
-    s->sign = sign;
   }
+  s->sign = sign;
   const int32_t d = sign * s->mean_q16.d;
   const int32_t q = qc_add_sat(sign * s->mean_q16.q, c->least_q16);
   const int32_t length = q_hypot(d, q);
@@ -70,7 +70,6 @@ void if_start_begin_turning(if_start_t* s, const if_start_config_t* c, uint32_t 
   s->speed_bpp = speed_bpp;
   s->rotor_bpp = speed_bpp;
   s->mean_bpp = speed_bpp;
-  s->sign = (speed_bpp < 0) ? -1 : 1;
   const dq_t emf_q16 = {0, q_div(speed_bpp, c->per_emf_q4, 20)};
   s->mean_q16 = frame_moved(emf_q16, ahead_bam);
   renew(s, c);

@@ -2,7 +2,7 @@
 
 #include "hal/qmath/qcall.h"
 
-#define WEAK 8  // of Y0: next to no saliency may be as much, of either sign
+#define WEAK_SHIFT 3u  // an eighth of Y0: next to no saliency may be as much, of either sign
 
 typedef struct {
   int32_t mean_q30, half_q30;
@@ -18,10 +18,13 @@ static inverse_inductance_t nominal(const machine_model_t* m) {
 static void trim(machine_model_t* m, const inverse_inductance_t* y, int32_t mean_q30, int32_t half_q30) {
   const int32_t mean = q_clamp(mean_q30, -y->mean_q30 / 4, y->mean_q30 / 2);
   // Both inverse inductances stay positive, whatever the windows say.
-  const int32_t weak = y->mean_q30 / WEAK;
-  const int32_t half_max = q_min(q_max(2 * y->half_q30, weak), (y->mean_q30 + mean) / 10 * 9);
-  const int32_t half_min = inverse_inductance_is_weak(m) ? -weak : q_min(y->half_q30 / 3, half_max);
-  machine_model_trim(m, mean, q_clamp(half_q30, half_min - y->half_q30, half_max - y->half_q30));
+  int32_t most = q_min(2 * y->half_q30, (y->mean_q30 + mean) / 10 * 9);
+  int32_t least = q_min(y->half_q30 / 3, most);
+  if (y->half_q30 < q_shr(y->mean_q30, WEAK_SHIFT + 1u)) {
+    most = q_shr(y->mean_q30, WEAK_SHIFT);
+    least = -most;
+  }
+  machine_model_trim(m, mean, q_clamp(half_q30 + y->half_q30, least, most) - y->half_q30);
 }
 
 void inverse_inductance_step(machine_model_t* m, const regression_t* r, q_inverse_t per_spread, int32_t share_q30) {

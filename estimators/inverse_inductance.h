@@ -11,10 +11,10 @@
 
 #include "estimators/regression.h"
 
-/// Whether the parameters say next to no saliency: Lq less than an eighth above Ld.
+/// Whether the parameters say next to no saliency: Lq less than an eighth above Ld, or 1/2 dY below a sixteenth of Y0.
 static inline bool inverse_inductance_is_weak(const machine_model_t* m) {
   const machine_point_t* const p = &m->map.points[0];
-  return p->ydd_q30 - p->yqq_q30 < p->yqq_q30 / 8;
+  return p->ydd_q30 - p->yqq_q30 < q_shr(p->yqq_q30, 3);
 }
 
 /// Moves the model's trim; per_spread: of r->spread_q8; share_q30: part of the error taken over per period, 0 for none.

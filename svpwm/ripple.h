@@ -18,10 +18,8 @@
 /// Ripple flux at some ticks together, up to three, V * period, Q16 (multiply by T/L to have amperes).
 ab_t svpwm_ripple_q16(const svpwm_pulses_t* p, const int16_t ticks[], uint16_t count, int32_t link_q16);
 
-/// Of a period with these pulses, for what is slow or not in every edition (svpwm/mean.c): mean voltage, V Q16, and mean
-/// ripple flux, V * period, Q16.
+/// Mean voltage of a period with these pulses, V Q16 (svpwm/mean.c: the flux methods alone want it).
 ab_t svpwm_mean_q16(const svpwm_pulses_t* p, int32_t link_q16);
-ab_t svpwm_mean_ripple_q16(const svpwm_pulses_t* p, int32_t link_q16);
 
 /// A walk along the edges that says what the own phase of each carries at that edge: its mean current and the ripple,
 /// as shares of a unit of current.

@@ -125,7 +125,7 @@ TEST(InverseInductance, NextToNoSaliencyMayTurnOver) {
     inverse_inductance_step(&m, &seen, per_spread(seen), kShare);
     EXPECT_GT(turned * m.trim.half_q30, 0);
     for (int n = 0; n < 2000; ++n) inverse_inductance_step(&m, &seen, per_spread(seen), kShare);
-    EXPECT_EQ(m.trim.half_q30, static_cast<std::int32_t>(turned) * (nominal.yd_q30 / 8));
+    EXPECT_EQ(m.trim.half_q30, static_cast<std::int32_t>(turned) * (nominal.yd_q30 >> 3));
   }
 }
 

@@ -76,23 +76,6 @@ TEST(Ripple, MeanVoltageIsThatOfTheStates) {
   }
 }
 
-TEST(Ripple, ItsMeanIsThatOfAllTicks) {
-  Random random(112);
-  for (int n = 0; n < 60; ++n) {
-    const double link = random.between(50.0, 420.0);
-    svpwm_pulses_t p;
-    for (int leg = 0; leg < 3; ++leg) {
-      p.at[leg] = static_cast<std::int16_t>(random.between(260.0, 9600.0));
-      p.at[SVPWM_LEGS + leg] = static_cast<std::int16_t>(random.between(p.at[leg] + 1.0, 9960.0));
-    }
-    Vector mean = {0.0, 0.0};
-    for (const Vector& flux : integrated(p, link)) mean = mean + flux * 1e-4;
-    const Vector seen = real(svpwm_mean_ripple_q16(&p, raw(link, 16)), 16);
-    ASSERT_NEAR(seen.x, mean.x, 2e-8 * link + 3.1e-5) << n;  // half a tick squared of N^2; Q16
-    ASSERT_NEAR(seen.y, mean.y, 2e-8 * link + 3.1e-5) << n;
-  }
-}
-
 TEST(Ripple, IsZeroAtBothEndsOfThePeriod) {
   const svpwm_pulses_t p = {{260, 5760, 5800, 4500, 9960, 9900}, 0};
   for (const std::int16_t tick : {std::int16_t{0}, std::int16_t{10000}}) {

@@ -19,9 +19,9 @@
 #include "firmware/mode/mode.h"
 #include "hal/qmath/qcall.h"
 #include "hal/qmath/qtrig.h"
-#include "svpwm/ripple.h"
 
-#define BAM_PER_RAD 683565276L  // the sine for its angle: at a half, the most, 29 degrees for 30
+#define PER_FOUR_PERIODS_Q58 720575940L  // 2^58 / 4 N^2, N = 10 000 ticks
+#define BAM_PER_RAD 683565276L           // the sine for its angle: at a half, the most, 29 degrees for 30
 
 if_start_t if_ramp;
 
@@ -92,13 +92,20 @@ static void take_over(drive_t* d) {
   d->flags.spins = behind == DRIVE_COMMISSION;
 }
 
-// The current is controlled at the periods' ends: in the mean of the two periods that take turns the ripple is more.
+// The current is controlled at the periods' ends. In the mean of the two periods that take turns it is more, by the
+// ripple: that of a leg is its pulse times what lacks to the period's middle, over the period squared.
 static int32_t mean_length_q20(const drive_t* d) {
-  const drive_modulation_t* const m = &d->modulation;
-  const ab_t one = svpwm_mean_ripple_q16(&m->patterns[0].pulses, d->samples.link_q16);
-  const ab_t other = svpwm_mean_ripple_q16(&m->patterns[1].pulses, d->samples.link_q16);
-  const ab_t both = {one.alpha + other.alpha, one.beta + other.beta};
-  return if_ramp.current_q20 + qc_mul(frame_turned(both, if_ramp.angle_bam).d, d->estimate.model.yd_q30, 27);
+  int32_t leg[SVPWM_LEGS];  // four times that, ticks squared
+  for (uint16_t k = 0; k < SVPWM_LEGS; k++) {
+    leg[k] = 0;
+    for (uint16_t n = 0; n < 2u; n++) {
+      const svpwm_pulses_t* const p = &d->modulation.patterns[n].pulses;
+      leg[k] += svpwm_on_ticks(p, k) * (SVPWM_PERIOD_TICKS - p->at[k] - p->at[svpwm_fall_of(k)]);
+    }
+  }
+  const abc_t legs = {leg[0], leg[1], leg[2]};
+  const int32_t along_q28 = qc_mul(frame_turned(frame_clarke3(legs), if_ramp.angle_bam).d, PER_FOUR_PERIODS_Q58, 30);
+  return if_ramp.current_q20 + qc_mul(qc_mul(d->samples.link_q16, d->estimate.model.yd_q30, 26), along_q28, 28);
 }
 
 // A winding at rest has no EMF: the vector's voltage is that of the resistance, cold or warm. Where the rotor is seen
