@@ -85,6 +85,9 @@ static inline ab_t frame_back(dq_t w, rotation_t r) {
   return v;
 }
 
+/// The larger one of two components, as it is without its sign.
+int32_t frame_largest(int32_t a, int32_t b);
+
 /// A vector of the stationary frame in one at this angle, and back.
 dq_t frame_turned(ab_t v, uint32_t angle_bam);
 ab_t frame_fixed(dq_t w, uint32_t angle_bam);

@@ -98,7 +98,7 @@ static void step_vector(if_start_t* s, const if_start_config_t* c) {
 void if_start_renew(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
   renew(s, c);
   if (!s->took_over || if_start_is_up(s, c)) return;
-  const int32_t across_q16 = q_max(qc_abs_sat(qc_sub_sat(voltage_q16.d, s->drop_q16)), qc_abs_sat(voltage_q16.q));
+  const int32_t across_q16 = frame_largest(qc_sub_sat(voltage_q16.d, s->drop_q16), voltage_q16.q);
   s->waited = (across_q16 / AWAY_SHARE > c->least_q16) ? q_min(s->waited, 0) - 1 : 0;
 }
 

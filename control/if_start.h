@@ -76,7 +76,7 @@ void if_start_turn_to(if_start_t* s, const if_start_config_t* c, int32_t target_
 
 /// True once the vector has its last speed.
 static inline bool if_start_is_up(const if_start_t* s, const if_start_config_t* c) {
-  return q_abs_sat(s->speed_bpp) >= c->speed_bpp;
+  return s->speed_bpp >= c->speed_bpp || s->speed_bpp <= -c->speed_bpp;
 }
 
 /// What changes slowly: once in a millisecond. Before the first time no speed is made of the EMF. voltage: command in

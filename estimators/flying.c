@@ -28,7 +28,7 @@ void flying_add(flying_pulse_t* s, const machine_model_t* m, const estimator_win
 
 int32_t flying_current(const flying_pulse_t* s) {
   if (s->windows == 0u) return 0;
-  return q_max(qc_abs_sat(s->last_q20.alpha), qc_abs_sat(s->last_q20.beta));
+  return frame_largest(s->last_q20.alpha, s->last_q20.beta);
 }
 
 // e = (v - R i) - di / (y_q dt), V Q16.

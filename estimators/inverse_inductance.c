@@ -15,29 +15,29 @@ static inverse_inductance_t nominal(const machine_model_t* m) {
   return y;
 }
 
-static void trim(machine_model_t* m, const inverse_inductance_t* y, int32_t mean_q30, int32_t half_q30) {
-  const int32_t mean = q_clamp(mean_q30, -y->mean_q30 / 4, y->mean_q30 / 2);
+static void trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30) {
+  const inverse_inductance_t y = nominal(m);
+  const int32_t mean = q_clamp(mean_q30, -y.mean_q30 / 4, y.mean_q30 / 2);
   // Both inverse inductances stay positive, whatever the windows say.
-  int32_t most = q_min(2 * y->half_q30, (y->mean_q30 + mean) / 10 * 9);
-  int32_t least = q_min(y->half_q30 / 3, most);
-  if (y->half_q30 < q_shr(y->mean_q30, WEAK_SHIFT + 1u)) {
-    most = q_shr(y->mean_q30, WEAK_SHIFT);
+  int32_t most = q_min(2 * y.half_q30, (y.mean_q30 + mean) / 10 * 9);
+  int32_t least = q_min(y.half_q30 / 3, most);
+  if (y.half_q30 < q_shr(y.mean_q30, WEAK_SHIFT + 1u)) {
+    most = q_shr(y.mean_q30, WEAK_SHIFT);
     least = -most;
   }
-  machine_model_trim(m, mean, q_clamp(half_q30 + y->half_q30, least, most) - y->half_q30);
+  machine_model_trim(m, mean, q_clamp(half_q30 + y.half_q30, least, most) - y.half_q30);
 }
 
 void inverse_inductance_step(machine_model_t* m, const regression_t* r, q_inverse_t per_spread, int32_t share_q30) {
   if (r->information <= 0) return;
-  const inverse_inductance_t y = nominal(m);
   // Inverse inductance error that a residual (V A per period, Q16) over a spread (V^2, Q8) stands for.
   const int32_t mean_q30 = m->trim.mean_q30 + q_mul(qc_over(r->along_q16, per_spread, 22), share_q30, 30);
   const int32_t half_q30 = m->trim.half_q30 + q_mul(qc_over(r->mirror_q16, per_spread, 22), share_q30, 30);
-  trim(m, &y, mean_q30, half_q30);
+  trim(m, mean_q30, half_q30);
 }
 
 void inverse_inductance_preset(machine_model_t* m, int32_t mean_q30, int32_t half_q30) {
   const inverse_inductance_t y = nominal(m);
-  trim(m, &y, qc_sub_sat(mean_q30, y.mean_q30), qc_sub_sat(half_q30, y.half_q30));
+  trim(m, qc_sub_sat(mean_q30, y.mean_q30), qc_sub_sat(half_q30, y.half_q30));
   machine_model_settle(m);
 }

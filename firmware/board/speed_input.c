@@ -29,15 +29,17 @@
 // The switch decides, the voltage says how fast.
 static void follow_switch(void) {
   const bool on = hal_digital_io_run();
-  const bool closed = on && !board.switch_closed, opened = !on && board.switch_closed;
-  board.switch_closed = on;
   if (!on) board.input = SPEED_INPUT_WAITS;
-  if (opened) drive_command_stop();
-  if (opened && drive.state == DRIVE_FAULT) drive_command_reset();
-  if (!closed || drive.state != DRIVE_READY) return;
-  board.input = SPEED_INPUT_RUNS;
-  comm_watchdog_begin(COMM_WATCHDOG_OWN, 0);
-  drive_command_start();
+  if (on == board.switch_closed) return;
+  board.switch_closed = on;
+  if (!on) {
+    drive_command_stop();
+    if (drive.state == DRIVE_FAULT) drive_command_reset();
+  } else if (drive.state == DRIVE_READY) {
+    board.input = SPEED_INPUT_RUNS;
+    comm_watchdog_begin(COMM_WATCHDOG_OWN, 0);
+    drive_command_start();
+  }
 }
 
 static void lose(void) {

@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 #include "firmware/api/status.h"
+#include "firmware/boot/serve.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/reset.h"
 #include "firmware/drive/steps.h"
@@ -17,10 +18,6 @@
 #include "hal/hal_safety.h"
 #include "hal/hal_sci.h"
 #include "hal/hal_time.h"
-
-static void serve(service_t* const* services) {
-  for (; *services != NULL; services++) (*services)();
-}
 
 // What has to go on for the watchdog to be serviced: the control interrupt, not the background loop.
 static uint16_t heartbeat(void) { return feature_status.stepped ? feature_status.heartbeat : drive.heartbeat; }
@@ -47,7 +44,8 @@ void firmware_main(void) {
   uint16_t seen = heartbeat();
   for (;;) {
     hal_idle();
-    serve(edition_pass);
+    // Written out: the stack is deepest below it.
+    for (service_t* const* service = edition_pass; *service != NULL; service++) (*service)();
     const uint16_t beat = heartbeat();
     const uint32_t now = hal_time_cycles();
     if (beat != seen && now - serviced > HAL_TIME_CYCLES_PER_US * 1000uL) {

@@ -54,8 +54,8 @@ static bool damping_fits(const machine_model_t* m, int32_t k_q24) {
 // What the estimators make of a point of the map fits their formats: of h (machine_model.h) with the largest current
 // that two sensors show together, twice their full scale.
 static bool point_fits(const machine_model_t* m) {
-  const int32_t k0_q20 = q_max(qc_abs_sat(m->k0_q20.d), qc_abs_sat(m->k0_q20.q));
-  const int32_t either_q24 = q_max(qc_abs_sat(m->k_dq_q24), qc_abs_sat(m->k_qd_q24));
+  const int32_t k0_q20 = frame_largest(m->k0_q20.d, m->k0_q20.q);
+  const int32_t either_q24 = frame_largest(m->k_dq_q24, m->k_qd_q24);
   const int32_t k_q24 = qc_add_sat(either_q24, 2 * qc_abs_sat(m->k_dd_q24));
   const int32_t h_speed_q20 = qc_add_sat(qc_mul_sat(k_q24, parameters.current_full_scale, 23), k0_q20);
   return k0_q20 <= K0_MAX_Q20 && h_speed_q20 < INT32_MAX && damping_fits(m, either_q24);
@@ -177,15 +177,14 @@ static int32_t share_per_slot_q30(int32_t time_q8) {
 
 // While the shaft is held the load is followed at once, five times as fast as at a crawl, and no step looked for. What
 // a window shows is then worth nearly what the sensors are: a fifth of the usual noise, twice that of their own.
-static void load_hold_observer(drive_config_t* c, const deviation_observer_tuning_t* usual) {
-  deviation_observer_tuning_t t = *usual;
-  t.noise_q20 = usual->noise_q20 / 5;
-  t.load_rate_q20 = qc_shl_sat(usual->load_rate_q20, 1);
-  t.load_rate_quiet_q20 = t.load_rate_q20;
-  t.load_step_q20 = 0;
-  t.steps_at_speed = false;
+static void load_hold_observer(drive_config_t* c, deviation_observer_tuning_t* t) {
+  t->noise_q20 /= 5;
+  t->load_rate_q20 = qc_shl_sat(t->load_rate_q20, 1);
+  t->load_rate_quiet_q20 = t->load_rate_q20;
+  t->load_step_q20 = 0;
+  t->steps_at_speed = false;
   c->hold_observer = c->observer;
-  deviation_observer_design(&c->hold_observer, &c->nameplate, &t);
+  deviation_observer_design(&c->hold_observer, &c->nameplate, t);
 }
 
 static bool load_position(drive_config_t* c) {
@@ -194,12 +193,12 @@ static bool load_position(drive_config_t* c) {
   c->avv.bandwidth_long_q30 = bandwidth_step_q30(q_max(p->avv_bandwidth_long, p->avv_bandwidth_short));
   // Without the map the angle turns with the current, and a load that is followed fast closes a loop over that.
   c->mapped = (p->map_known | p->ldq_1 | p->ldq_2 | p->ldq_3 | p->ldq_4) != 0;
-  const deviation_observer_tuning_t observer = {qc_mul(p->observer_noise, 1073741824L, 18) / 1000,
-                                                p->observer_load_rate,
-                                                p->observer_load_quiet,
-                                                c->mapped ? p->observer_load_step : p->observer_load_step / 4 * 3,
-                                                qc_mul(CRAWL_MAX_RPM_Q16, c->bpp_per_rpm_q8, 24),
-                                                c->mapped};
+  deviation_observer_tuning_t observer = {qc_mul(p->observer_noise, 1073741824L, 18) / 1000,
+                                          p->observer_load_rate,
+                                          p->observer_load_quiet,
+                                          c->mapped ? p->observer_load_step : p->observer_load_step / 4 * 3,
+                                          qc_mul(CRAWL_MAX_RPM_Q16, c->bpp_per_rpm_q8, 24),
+                                          c->mapped};
   deviation_observer_design(&c->observer, &c->nameplate, &observer);
   c->observer.cogging.order = p->cogging_order;
   // Cogging is no larger than what a load is expected to change by.

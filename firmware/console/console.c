@@ -35,6 +35,7 @@ static struct {
   editor_line_t command;  // the one that is being answered
   uint16_t kept[KEPT];
 } self;
+static editor_line_t ahead;  // the last line of those that were typed ahead
 
 void console_reset(void) {
   editor_reset(&self.editor);
@@ -70,8 +71,8 @@ static uint16_t port_errors(void) {
 // What a disturbed line says may be something else than what was sent. Only what makes the drive safe is done all the
 // same.
 static void obey(void) {
-  const bool damaged = self.editor.disturbed || port_errors() != self.errors_before;
   self.command = self.editor.line;
+  const bool damaged = self.editor.disturbed || port_errors() != self.errors_before;
   if (self.editor.too_long) {
     line_refused(SAY_a_line_has_at_most_80_characters);
   } else if (damaged && !command_makes_safe(&self.command)) {
@@ -112,19 +113,16 @@ static void break_off(void) {
 
 // Whether what was typed ahead ends with a line that stops the motor.
 static bool asks_to_stop(void) {
-  static editor_line_t last;
-  last.count = 0;
+  ahead.count = 0;
   for (uint16_t k = 0; k + 1u < self.kept_count; k++) {
     const uint16_t octet = self.kept[(uint16_t)(self.kept_first + k) & (KEPT - 1u)] & 0xFFu;
     if (octet == RETURN || octet == LINE_FEED) {
-      last.count = 0;
+      ahead.count = 0;
     } else {
-      last.text[last.count++ & (KEPT - 1u)] = octet;  // there are fewer
+      ahead.text[ahead.count++ & (KEPT - 1u)] = octet;  // there are fewer
     }
   }
-  if (!command_makes_safe(&last)) return false;
-  self.command = last;
-  return true;
+  return command_makes_safe(&ahead);
 }
 
 // To stop does not wait for the end of a long answer.
@@ -132,7 +130,7 @@ static void stop_at_once(void) {
   console_work.function = NULL;
   self.kept_count = 0;
   line_of(SAY_the_answer_and_what_was_typed_ahead);
-  command_obey(&self.command, false);
+  command_obey(&ahead, false);
   prompt();
 }
 
@@ -190,9 +188,10 @@ static void tell(void) {
   fault_record_t fault;
   const uint16_t total = fault_history_total();
   const bool faulted = total != self.faults_shown && fault_history_read(0, &fault);
-  const bool silent = comm_watchdog_has_stopped() && !self.silence_shown;
+  const bool stopped = comm_watchdog_has_stopped();
+  const bool silent = stopped && !self.silence_shown;
   self.faults_shown = total;
-  self.silence_shown = comm_watchdog_has_stopped();
+  self.silence_shown = stopped;
   if (!self.someone_types || !(faulted || silent)) return;
   octet_writer_t* const w = line_begin();
   put_text(w, "\r\n! ");

@@ -57,7 +57,7 @@ PLACE(90)
 PARAMETER(330, mtpa, NONE, 0, 0, 0, 1, 0, ALWAYS, "1 adds the d-axis current that gives the most torque per ampere")
 PARAMETER(331, current_divider, NONE, 0, 0, 1, 2, 1, STOPPED, "PWM periods per step of the current control")
 PARAMETER(332, current_corner, NONE, 0, 0, 0, 1, 0, STOPPED,
-          "corner of the current's integrator: 0 a quarter of current_bandwidth or R/L, 1 R/L")
+          "corner of the current integrator: 0 a quarter of current_bandwidth or R/L, 1 R/L")
 
 PLACE(145)
 PARAMETER(101, divergence_limit, DEG, 16, 0, 10, 90, 45, ALWAYS,

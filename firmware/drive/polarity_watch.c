@@ -143,28 +143,29 @@ static void gather(const drive_t* d, polarity_watch_t* w) {
   w->axis_periods++;
 }
 
+// The back-EMF's slot is one with room: with three windows the match of the voltage, which rests meanwhile
+// (learning.c), with two the regression, where what was seen waits for the next look at the axis. Not where the
+// observer has renewed its covariance, unless that goes on.
+static bool looks_now(const drive_t* d, polarity_watch_t* w, bool full) {
+  if (d->schedule.slot == SLOT_REGRESSION) w->then_periods = w->axis_periods;
+  if (d->schedule.slot != (full ? SLOT_VOLTAGE : SLOT_REGRESSION)) return false;
+  const bool renewed = d->estimate.observer.gathered.periods == 0 && drive_source_has(d, SOURCE_OBSERVES);
+  return !(w->samples_invalid || (renewed && w->periods < WAITED_MAX));
+}
+
 bool polarity_watch_step(const drive_t* d) {
   polarity_watch_t* const w = &polarity_watch;
   if (!polarity_watch_is_awake(d)) return false;
   gather(d, w);
-  const schedule_slot_t slot = d->schedule.slot;
-  if (slot == SLOT_LOOK) {
+  if (d->schedule.slot == SLOT_LOOK) {
     follow_axis(d);
-    return says_reversed(d);
+  } else {
+    const bool full = d->samples.count >= ESTIMATOR_WINDOWS;
+    if (!looks_now(d, w, full)) return false;
+    look(d);
+    if (!full) return false;
   }
-  // The back-EMF's slot is one with room: with three windows the match of the voltage, which rests meanwhile
-  // (learning.c), with two the regression, where what was seen waits for the next look at the axis. Not where the
-  // observer has renewed its covariance, unless that goes on.
-  const bool full = d->samples.count >= ESTIMATOR_WINDOWS;
-  if (slot != SLOT_REGRESSION && (slot != SLOT_VOLTAGE || !full)) return false;
-  if (slot == SLOT_REGRESSION) {
-    w->then_periods = w->axis_periods;
-    if (full) return false;
-  }
-  const bool renewed = d->estimate.observer.gathered.periods == 0 && drive_source_has(d, SOURCE_OBSERVES);
-  if (w->samples_invalid || (renewed && w->periods < WAITED_MAX)) return false;
-  look(d);
-  return full && says_reversed(d);
+  return says_reversed(d);
 }
 
 bool polarity_watch_suspects(void) {

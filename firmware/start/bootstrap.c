@@ -20,7 +20,7 @@ static void begin_charge(drive_t* d) {
 static bool flows(const drive_t* d) {
   if (d->samples.count == 0u || d->flags.invalid > 0u) return false;
   const ab_t i = d->samples.windows[d->samples.count - 1u].current_q20;
-  return q_max(qc_abs_sat(i.alpha), qc_abs_sat(i.beta)) > d->config.values.current_limit / 2;
+  return frame_largest(i.alpha, i.beta) > d->config.values.current_limit / 2;
 }
 
 static start_phase_t step_charge(drive_t* d) {

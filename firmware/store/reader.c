@@ -40,7 +40,7 @@ static void take(uint16_t octets) { self.crc = crc32_add_all(self.crc, &self.chu
 
 // What has come is the header.
 static reader_result_t take_header(void) {
-  self.header = slot_unpack_header(self.chunk);
+  slot_unpack_header(self.chunk, &self.header);
   self.used = SLOT_MAGIC_OCTETS;
   take(SLOT_HEADER - SLOT_MAGIC_OCTETS);
   self.used = SLOT_HEADER;
@@ -63,7 +63,7 @@ static reader_result_t take_arrived(void) {
 reader_result_t reader_step(slot_entry_t* entry) {
   if (self.used < self.held && !self.reading) {
     const uint16_t octets = (uint16_t)q_min(SLOT_ENTRY, self.held - self.used);
-    *entry = slot_unpack_entry(self.chunk + self.used);
+    slot_unpack_entry(self.chunk + self.used, entry);
     take(octets);
     self.used = (uint16_t)(self.used + SLOT_ENTRY);  // the last one may be shorter: then that is all as well
     return (self.header.version == SLOT_VERSION) ? READER_ENTRY : READER_WAITS;

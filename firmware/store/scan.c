@@ -69,32 +69,30 @@ void scan_begin(bool stage_values) {
   read_header(0);
 }
 
-// Whether what another slot has, or had, may be younger than the slot that was found.
+// Whether what the other slot has, or had, may be younger than the slot that was found.
 static bool is_outrun(void) {
-  if (self.report.newest != self.report.slot) return true;
-  for (uint16_t k = 0; k < SLOTS; k++) {
-    if (self.spoilt[k] && slot_is_newer(self.headers[k].sequence, self.headers[self.report.slot].sequence)) return true;
-  }
-  return false;
+  const uint16_t slot = self.report.slot;
+  const uint16_t other = slot_other(slot);
+  return self.report.newest != slot ||
+         (self.spoilt[other] && slot_is_newer(self.headers[other].sequence, self.headers[slot].sequence));
 }
 
 static scan_result_t conclude(void) {
-  if (self.report.slot < SLOTS) self.report.older = is_outrun();
-  if (self.report.slot < SLOTS) return SCAN_FOUND;
+  if (self.report.slot < SLOTS) {
+    self.report.older = is_outrun();
+    return SCAN_FOUND;
+  }
   if (self.any_foreign) return SCAN_FOREIGN;
   return (self.report.damaged > 0u) ? SCAN_DAMAGED : SCAN_EMPTY;
 }
 
-// The newest slot that has not been checked yet.
+// The newer slot, where it has not been checked yet, else the other one.
 static scan_result_t check_next(void) {
-  uint16_t newest = SLOTS;
-  for (uint16_t k = 0; k < SLOTS; k++) {
-    if (!self.candidate[k]) continue;
-    if (newest == SLOTS || slot_is_newer(self.headers[k].sequence, self.headers[newest].sequence)) newest = k;
-  }
-  if (newest == SLOTS) return conclude();
-  self.slot = newest;
-  self.candidate[self.slot] = false;
+  uint16_t next = slot_is_newer(self.headers[1].sequence, self.headers[0].sequence) ? 1u : 0u;
+  if (!self.candidate[next]) next = slot_other(next);
+  if (!self.candidate[next]) return conclude();
+  self.slot = next;
+  self.candidate[next] = false;
   self.stage = CHECK_SLOT;
   self.reads = 0;
   begin_check();
@@ -118,8 +116,9 @@ static bool header_is_sure(void) {
 
 static scan_result_t take_header(void) {
   if (!header_is_sure() && read_again()) return SCAN_GOES_ON;
-  self.headers[self.slot] = slot_unpack_header(self.octets);
-  self.candidate[self.slot] = slot_is_plausible(&self.headers[self.slot]);
+  slot_header_t* const header = &self.headers[self.slot];
+  slot_unpack_header(self.octets, header);
+  self.candidate[self.slot] = slot_is_plausible(header);
   self.spoilt[self.slot] = false;
   if (!self.candidate[self.slot] && !slot_is_blank(self.octets)) give_up_slot();
   self.reads = 0;

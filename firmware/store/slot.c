@@ -22,15 +22,13 @@ void slot_pack_header(const slot_header_t* header, uint16_t* octets) {
   put_u16(&w, 0);
 }
 
-slot_header_t slot_unpack_header(const uint16_t* octets) {
+void slot_unpack_header(const uint16_t* octets, slot_header_t* header) {
   octet_reader_t r = octet_reader(octets, SLOT_HEADER);
-  slot_header_t header;
-  header.magic = take_u32(&r);
-  header.version = take_u16(&r);
-  header.count = take_u16(&r);
-  header.sequence = take_u32(&r);
-  header.length = take_u16(&r);
-  return header;
+  header->magic = take_u32(&r);
+  header->version = take_u16(&r);
+  header->count = take_u16(&r);
+  header->sequence = take_u32(&r);
+  header->length = take_u16(&r);
 }
 
 void slot_pack_entry(const slot_entry_t* entry, uint16_t* octets) {
@@ -41,14 +39,12 @@ void slot_pack_entry(const slot_entry_t* entry, uint16_t* octets) {
   put_i32(&w, entry->raw);
 }
 
-slot_entry_t slot_unpack_entry(const uint16_t* octets) {
+void slot_unpack_entry(const uint16_t* octets, slot_entry_t* entry) {
   octet_reader_t r = octet_reader(octets, SLOT_ENTRY);
-  slot_entry_t entry;
-  entry.id = take_u16(&r);
-  entry.q = take_u8(&r);
+  entry->id = take_u16(&r);
+  entry->q = take_u8(&r);
   (void)take_u8(&r);
-  entry.raw = take_i32(&r);
-  return entry;
+  entry->raw = take_i32(&r);
 }
 
 bool slot_is_plausible(const slot_header_t* header) {

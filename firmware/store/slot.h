@@ -41,14 +41,17 @@ typedef struct {
   int32_t raw;
 } slot_entry_t;
 
+/// Of the two.
+static inline uint16_t slot_other(uint16_t slot) { return (uint16_t)(1u - slot); }
+
 void slot_pack_u32(uint32_t value, uint16_t* octets);
 uint32_t slot_unpack_u32(const uint16_t* octets);
 
 void slot_pack_header(const slot_header_t* header, uint16_t* octets);
-slot_header_t slot_unpack_header(const uint16_t* octets);
+void slot_unpack_header(const uint16_t* octets, slot_header_t* header);
 
 void slot_pack_entry(const slot_entry_t* entry, uint16_t* octets);
-slot_entry_t slot_unpack_entry(const uint16_t* octets);
+void slot_unpack_entry(const uint16_t* octets, slot_entry_t* entry);
 
 /// Whether a slot may be there: its CRC tells.
 bool slot_is_plausible(const slot_header_t* header);

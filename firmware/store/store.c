@@ -156,7 +156,7 @@ static void save(void) {
   const writer_result_t result = writer_step();
   if (result == WRITER_GOES_ON) return;
   self.kept_known = result == WRITER_DONE;
-  if (self.kept_known) self.report = writer_report();
+  if (self.kept_known) writer_report(&self.report);
   end(self.kept_known ? STORE_SAVED : STORE_FAILED);
 }
 

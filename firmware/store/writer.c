@@ -37,13 +37,13 @@ uint16_t writer_progress(void) {
   return (self.stage == READ_BACK) ? (uint16_t)(90u + reader_progress() / 20u) : 95u;
 }
 
-store_report_t writer_report(void) {
-  store_report_t report = {0};
-  report.slot = report.newest = self.new_slot;
-  report.sequence = self.header.sequence;
-  report.values = self.header.count;
-  report.unknown = self.unknown;
-  return report;
+void writer_report(store_report_t* report) {
+  static const store_report_t nothing = {0};
+  *report = nothing;
+  report->slot = report->newest = self.new_slot;
+  report->sequence = self.header.sequence;
+  report->values = self.header.count;
+  report->unknown = self.unknown;
 }
 
 static void put(uint16_t octets) {

@@ -18,7 +18,7 @@ bool writer_begin(const store_report_t* so_far);
 writer_result_t writer_step(void);
 
 /// Of the slot that has been written.
-store_report_t writer_report(void);
+void writer_report(store_report_t* report);
 
 /// 0..100.
 uint16_t writer_progress(void);

@@ -61,16 +61,20 @@ static bool find_timing(uint32_t bitrate, uint32_t* timing) {
   return false;
 }
 
+// A group's lowest mailbox stays open, so that a frame too many is told (RML) instead of lost without a word.
 static bool share_mailboxes(const hal_can_group_t* groups, uint16_t group_count) {
   uint16_t left = HAL_CAN_MAILBOXES;
   if (group_count > HAL_CAN_GROUPS_MAX) return false;
   can.transmit_mailboxes = ALL_MAILBOXES;
+  can.protected_mailboxes = 0uL;
   for (uint16_t g = 0u; g < group_count; g++) {
     if (groups[g].mailboxes == 0u || groups[g].mailboxes >= left) return false;
     left = (uint16_t)(left - groups[g].mailboxes);
     can.groups[g] = groups[g];
-    can.group_mailboxes[g] = can.transmit_mailboxes & ~(bit_of(left) - 1u);
-    can.transmit_mailboxes = bit_of(left) - 1u;
+    const uint32_t below = bit_of(left) - 1u;
+    can.group_mailboxes[g] = can.transmit_mailboxes & ~below;
+    can.protected_mailboxes |= can.group_mailboxes[g] & ~bit_of(left);
+    can.transmit_mailboxes = below;
   }
   can.group_count = group_count;
   return true;
@@ -133,16 +137,6 @@ static void configure_group(uint16_t g) {
   }
 }
 
-// The group's lowest mailbox stays open, so that a frame too many is told (RML) instead of lost without a word.
-static uint32_t protected_mailboxes(void) {
-  uint32_t mailboxes = 0uL;
-  for (uint16_t g = 0u; g < can.group_count; g++) {
-    const uint32_t group = can.group_mailboxes[g];
-    mailboxes |= group & (group - 1u);
-  }
-  return mailboxes;
-}
-
 static void configure(void) {
   write_protected(REG_CANBTC, can.timing);
   target_write32(REG_CANME, 0uL);
@@ -150,7 +144,6 @@ static void configure(void) {
   for (uint16_t n = 0u; n < HAL_CAN_MAILBOXES; n++) target_write32(REG_CANMSGCTRL(n), 0uL);
   for (uint16_t g = 0u; g < can.group_count; g++) configure_group(g);
   target_write32(REG_CANMD, ~can.transmit_mailboxes);
-  can.protected_mailboxes = protected_mailboxes();
   target_write32(REG_CANOPC, can.protected_mailboxes);
   target_write32(REG_CANTA, ALL_MAILBOXES);
   target_write32(REG_CANAA, ALL_MAILBOXES);

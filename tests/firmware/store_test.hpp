@@ -106,10 +106,13 @@ class Store : public Drive {
   static std::vector<slot_entry_t> entries_of(unsigned slot) {
     std::vector<std::uint16_t> octets(nvm.memory.begin() + slot * SLOT_SIZE,
                                       nvm.memory.begin() + (slot + 1) * SLOT_SIZE);
-    const slot_header_t header = slot_unpack_header(octets.data());
+    slot_header_t header;
+    slot_unpack_header(octets.data(), &header);
     std::vector<slot_entry_t> entries;
     for (unsigned k = 0; k < header.count && k < SLOT_ENTRIES_MAX; ++k) {
-      entries.push_back(slot_unpack_entry(octets.data() + SLOT_HEADER + k * SLOT_ENTRY));
+      slot_entry_t entry;
+      slot_unpack_entry(octets.data() + SLOT_HEADER + k * SLOT_ENTRY, &entry);
+      entries.push_back(entry);
     }
     return entries;
   }

@@ -22,7 +22,7 @@ estimator_output_t source_observer(const drive_t* d, drive_estimate_t* e, estima
     const int32_t error_bam = avv_angle_error(&o->regression, &e->model);
     e->avv.error_bam = error_bam;
     // An axis that hardly shows says nothing of the angle, which the EMF has told.
-    e->is_near = e->is_near && (q_abs_sat(error_bam) <= AVV_NEAR_BAM || inverse_inductance_is_weak(&e->model));
+    if (q_abs_sat(error_bam) > AVV_NEAR_BAM && !inverse_inductance_is_weak(&e->model)) e->is_near = false;
   }
   source_learn(d, e, &o->regression);
   e->high = out;

@@ -8,9 +8,10 @@
 
 static bool wait_for_look(uint16_t step) {
   (void)step;
-  if (drive_look_outcome() == LOOK_RUNNING) return true;
+  const look_outcome_t outcome = drive_look_outcome();
+  if (outcome == LOOK_RUNNING) return true;
   put_look(line_begin());
-  if (drive_look_outcome() == LOOK_ENDED) count_refusal();
+  if (outcome == LOOK_ENDED) count_refusal();
   line_end();
   return false;
 }

@@ -167,22 +167,14 @@ static void carry_on(drive_t* d, int32_t axis_bam) {
   position_preset_axis(&d->estimate, rotor->angle_bam, rotor->speed_bpp);
 }
 
-// A start that asks no saliency for the axis has nothing to learn and nothing to watch: the pulses' word is the last.
-static start_phase_t run_at_once(drive_t* d) {
-  carry_on(d, 0);
-  const bool ready = d->flags.invalid == 0u && start_has_exclusive_slot(d);
-  if (ready) start_run(d, flying_start.rotor.angle_bam, flying_start.rotor.speed_bpp);
-  return START_GOES_ON;
-}
-
 // The first periods go to the axis and the inverse inductances, in the frame that turns with the rotor as the back-EMF
-// has it.
-static void learn(drive_t* d) {
+// has it. How far the axis is from there, once that is known.
+static int32_t learn(drive_t* d) {
   flying_start_t* const s = &flying_start;
   int32_t axis_bam = 0;
   s->learnt = start_sees_axis(d, d->flags.invalid == 0u, &axis_bam);
   s->flux_due = s->learnt;
-  carry_on(d, s->learnt ? q_limit(axis_bam, STRAY_MAX_BAM) : 0);
+  return q_limit(axis_bam, STRAY_MAX_BAM);
 }
 
 static void begin_catch(drive_t* d) {
@@ -199,9 +191,12 @@ static start_phase_t step_catch(drive_t* d) {
     return START_GOES_ON;
   }
   if (d->flags.gates_off) start_power(d, true);
-  if (start_is_open_loop(d)) return run_at_once(d);
-  if (!s->learnt) {
-    learn(d);
+  // A start that asks no saliency for the axis has nothing to learn and nothing to watch: the pulses' word is the last.
+  const bool at_once = start_is_open_loop(d);
+  if (at_once || !s->learnt) {
+    carry_on(d, at_once ? 0 : learn(d));
+    const bool ready = at_once && d->flags.invalid == 0u && start_has_exclusive_slot(d);
+    if (ready) start_run(d, s->rotor.angle_bam, s->rotor.speed_bpp);
     return START_GOES_ON;
   }
   if (s->flux_due) {
