@@ -8,8 +8,10 @@
 #define MEAN_SHIFT 10u            // 100 ms
 #define FILTER_LEAST 3u
 #define FILTER_MOST 8u
-#define AWAY_SHARE 16  // times least_q16, an eighth of the EMF at the last speed: twice that
-#define AWAY_MS 50     // a change of current takes less
+#define AWAY_SHARE 16   // times least_q16, an eighth of the EMF at the last speed: twice that
+#define AWAY_MS 50      // a change of current takes less
+#define LED_PERIODS 30  // 5/a of the current control at 1800 rad/s
+#define EMF_BITS 28u    // 4096 V
 
 // Lq I/(lambda w0) in periods, as the next power of two.
 static uint16_t filter_shift(const if_start_config_t* c, const machine_model_t* m) {
@@ -70,7 +72,8 @@ void if_start_begin_turning(if_start_t* s, const if_start_config_t* c, uint32_t 
   s->speed_bpp = speed_bpp;
   s->rotor_bpp = speed_bpp;
   s->mean_bpp = speed_bpp;
-  const dq_t emf_q16 = {0, q_div(speed_bpp, c->per_emf_q4, 20)};
+  s->agreed = -LED_PERIODS;
+  const dq_t emf_q16 = {0, q_within_bits(q_div(speed_bpp, c->per_emf_q4, 20), EMF_BITS)};
   s->mean_q16 = frame_moved(emf_q16, ahead_bam);
   renew(s, c);
 }
@@ -84,9 +87,10 @@ void if_start_turn_to(if_start_t* s, const if_start_config_t* c, int32_t target_
 static void step_vector(if_start_t* s, const if_start_config_t* c) {
   const int32_t half = c->align_periods / 2;
   const int32_t lead = half / 2;
+  const int32_t led = s->tick - half;
   if (s->tick < half) s->current_q20 = c->current_q20 / half * s->tick;
   if (s->tick == half) s->current_q20 = c->current_q20;
-  if (s->tick >= half && s->tick < half + lead) {
+  if (led >= 0 && led < lead) {
     const int32_t step = (int32_t)ANGLE_BAM_QUARTER_TURN / lead;
     s->vector_bam += (uint32_t)((s->end_bpp < 0) ? -step : step);
   }
@@ -102,7 +106,13 @@ void if_start_renew(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16)
   s->waited = (across_q16 / AWAY_SHARE > c->least_q16) ? q_min(s->waited, 0) - 1 : 0;
 }
 
+// While a current is led over, its inductance and the drop that it has not yet are no EMF.
 static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
+  s->angle_bam = s->vector_bam;
+  if (s->agreed < 0) {
+    s->agreed++;
+    return;
+  }
   const dq_t emf_q16 = {qc_sub_sat(voltage_q16.d, s->drop_q16), voltage_q16.q};
   s->mean_q16.d = qc_follow(s->mean_q16.d, emf_q16.d, MEAN_SHIFT);
   s->mean_q16.q = qc_follow(s->mean_q16.q, emf_q16.q, MEAN_SHIFT);
@@ -111,7 +121,7 @@ static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
   s->mean_bpp = qc_follow(s->mean_bpp, s->rotor_bpp, MEAN_SHIFT);
   const int32_t fast = qc_sub_sat(s->rotor_bpp, s->mean_bpp);
   const int32_t shift = q_clamp(qc_mul_sat(fast, 2 * c->damping_periods, 1), -SHIFT_MAX_BAM, SHIFT_MAX_BAM);
-  s->angle_bam = s->vector_bam - (uint32_t)shift;
+  s->angle_bam -= (uint32_t)shift;
 }
 
 if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16, uint32_t seen_bam,

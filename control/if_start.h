@@ -14,7 +14,8 @@
 // where Lq I is more than half of lambda, that leaves little damping.
 //
 // A vector can also take over a rotor that turns, to keep it where the source sees nothing or to turn it through
-// standstill. It then goes to `end_bpp`, in either direction. If the load pulls that rotor out of step it runs away: an
+// standstill. Its EMF is known from what it had, and for 3 ms, in which the current is led over, nothing is made of the
+// voltage. The vector then goes to `end_bpp`, in either direction. If the load pulls that rotor out of step it runs away: an
 // EMF of twice that of the last speed, for 50 ms, is a failure.
 //
 // The source takes over when for 300 ms it has been within 80 degrees of the vector and within a quarter of its speed.
@@ -54,7 +55,7 @@ typedef struct {
   int32_t rotor_bpp;    // speed of the rotor by the EMF, filtered
   int32_t mean_bpp;     // its mean
   int32_t waited;       // periods; below 0: ms in which the EMF has been too large
-  int16_t agreed;       // periods
+  int16_t agreed;       // periods; below 0: until the current of a rotor that was taken over is there
   int16_t sign;         // of the speed that the mean belongs to
   bool took_over;       // a rotor that turned already
 } if_start_t;

@@ -86,7 +86,7 @@ static void any_vector(if_start_t* s, const if_start_config_t* c) {
   s->drop_q16 = any_from(-TURN_DROP_END_Q16, TURN_DROP_END_Q16);
   s->rotor_bpp = any_i32;
   s->mean_bpp = any_i32;
-  s->agreed = any_from(0, IF_START_AGREED - 1);
+  s->agreed = any_from(-30, IF_START_AGREED - 1);
   s->waited = any_from(-50, c->wait_periods);
   s->sign = (int16_t)any_from(-1, 1);
 }
@@ -115,7 +115,7 @@ static void turn_vector(int32_t periods) {
   if (if_start_step(&s, &c, any_dq(TURN_COMMAND_END_Q16), any_u32, any_speed()) != IF_START_PENDING) return;
   //@ assert WITHIN(s.mean_q16.d, TURN_EMF_END_Q16) && WITHIN(s.mean_q16.q, TURN_EMF_END_Q16);
   //@ assert -683565276 <= s.speed_bpp <= 683565276 && 0 <= s.tick <= 65536;
-  //@ assert 0 <= s.agreed < 3000 && -51 <= s.waited <= 100000;
+  //@ assert -30 <= s.agreed < 3000 && -51 <= s.waited <= 100000;
 }
 
 static void limit_and_hold(void) {

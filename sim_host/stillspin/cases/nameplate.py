@@ -40,7 +40,7 @@ FOLLOWING = (
     Following("rated_current", "machine", "rated_peak_current", digits=2),
     Following("current_full_scale", "adc", "current_range", needed=False),
     Following("trip_current", "adc", "current_range", 0.9, needed=False),
-    Following("observer_noise", "adc", "current_range", 5.0, needed=False),  # mA, quantisation and noise of 12 bits
+    Following("observer_noise", "adc", "current_range", 1e3 * similarity.NOISE_PER_AMPERE, needed=False),  # mA
     Following("link_full_scale", "adc", "voltage_range", needed=False),
     Following("link_minimum", "link", "source_voltage", 0.5),
     Following("link_regulation", "link", "source_voltage", 1.35, needed=False),
