@@ -25,7 +25,7 @@ static void trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30) {
     most = q_shr(y.mean_q30, WEAK_SHIFT);
     least = -most;
   }
-  machine_model_trim(m, mean, q_clamp(half_q30 + y.half_q30, least, most) - y.half_q30);
+  machine_model_trim(m, mean, q_clamp(half_q30, least - y.half_q30, most - y.half_q30));
 }
 
 void inverse_inductance_step(machine_model_t* m, const regression_t* r, q_inverse_t per_spread, int32_t share_q30) {
