@@ -10,8 +10,8 @@
 #define FILTER_MOST 8u
 #define AWAY_SHARE 16   // times least_q16, an eighth of the EMF at the last speed: twice that
 #define AWAY_MS 50      // a change of current takes less
-#define LED_PERIODS 30  // 5/a of the current control at 1800 rad/s
-#define EMF_BITS 28u    // 4096 V
+#define LED_PERIODS 40  // 7/a of the current control at 1800 rad/s
+#define LED_SHIFT 3u    // 0.8 ms
 
 // Lq I/(lambda w0) in periods, as the next power of two.
 static uint16_t filter_shift(const if_start_config_t* c, const machine_model_t* m) {
@@ -44,38 +44,16 @@ void if_start_begin(if_start_t* s, const if_start_config_t* c, uint32_t angle_ba
   s->angle_bam = s->vector_bam;
 }
 
-// The EMF's own mean direction: along it is, to first order, the rotor's speed alone, whatever the lag. Near standstill
-// it is that of no lag. A vector that begins to turn the other way turns the EMF over.
-static void renew(if_start_t* s, const if_start_config_t* c) {
-  const int16_t sign = (s->speed_bpp < 0) ? -1 : 1;
-  if (sign + s->sign == 0) {
-    s->mean_q16.d = -s->mean_q16.d;
-    s->mean_q16.q = -s->mean_q16.q;
-  }
-  s->sign = sign;
-  const int32_t d = sign * s->mean_q16.d;
-  const int32_t q = qc_add_sat(sign * s->mean_q16.q, c->least_q16);
-  const int32_t length = q_hypot(d, q);
-  s->per_emf_q4.d = qc_mul(q_div(d, length, 30), c->per_emf_q4, 30);
-  s->per_emf_q4.q = qc_mul(q_div(q, length, 30), c->per_emf_q4, 30);
-  s->drop_q16 = qc_mul_sat(c->resistance_q24, s->current_q20, 28);
-}
-
-void if_start_begin_turning(if_start_t* s, const if_start_config_t* c, uint32_t angle_bam, uint32_t ahead_bam,
-                            int32_t current_q20, int32_t speed_bpp) {
+void if_start_begin_turning(if_start_t* s, const if_start_config_t* c, uint32_t angle_bam, int32_t current_q20,
+                            int32_t speed_bpp) {
   if_start_begin(s, c, angle_bam, speed_bpp < 0);
   s->took_over = true;
-  s->vector_bam = angle_bam + ahead_bam;
-  s->angle_bam = s->vector_bam;
+  s->vector_bam = angle_bam;
+  s->angle_bam = angle_bam;
   s->current_q20 = current_q20;
   s->tick = c->align_periods;
   s->speed_bpp = speed_bpp;
-  s->rotor_bpp = speed_bpp;
-  s->mean_bpp = speed_bpp;
   s->agreed = -LED_PERIODS;
-  const dq_t emf_q16 = {0, q_within_bits(q_div(speed_bpp, c->per_emf_q4, 20), EMF_BITS)};
-  s->mean_q16 = frame_moved(emf_q16, ahead_bam);
-  renew(s, c);
 }
 
 void if_start_turn_to(if_start_t* s, const if_start_config_t* c, int32_t target_bpp) {
@@ -99,29 +77,48 @@ static void step_vector(if_start_t* s, const if_start_config_t* c) {
   s->vector_bam += (uint32_t)s->speed_bpp;
 }
 
+// The EMF's own mean direction: along it is, to first order, the rotor's speed alone, whatever the lag. Near standstill
+// it is that of no lag. A vector that begins to turn the other way turns the EMF over.
+static void renew_direction(if_start_t* s, const if_start_config_t* c) {
+  const int16_t sign = (s->speed_bpp < 0) ? -1 : 1;
+  if (sign + s->sign == 0) {
+    s->mean_q16.d = -s->mean_q16.d;
+    s->mean_q16.q = -s->mean_q16.q;
+  }
+  s->sign = sign;
+  const int32_t d = sign * s->mean_q16.d;
+  const int32_t q = qc_add_sat(sign * s->mean_q16.q, c->least_q16);
+  const int32_t length = q_hypot(d, q);
+  s->per_emf_q4.d = qc_mul(q_div(d, length, 30), c->per_emf_q4, 30);
+  s->per_emf_q4.q = qc_mul(q_div(q, length, 30), c->per_emf_q4, 30);
+}
+
 void if_start_renew(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
-  renew(s, c);
+  renew_direction(s, c);
+  s->drop_q16 = qc_mul_sat(c->resistance_q24, s->current_q20, 28);
   if (!s->took_over || if_start_is_up(s, c)) return;
   const int32_t across_q16 = frame_largest(qc_sub_sat(voltage_q16.d, s->drop_q16), voltage_q16.q);
   s->waited = (across_q16 / AWAY_SHARE > c->least_q16) ? q_min(s->waited, 0) - 1 : 0;
 }
 
-// While a current is led over, its inductance and the drop that it has not yet are no EMF.
+// While a current is led over, its inductance and the drop that it has not yet are no speed: until it is there the
+// means follow at once, and the vector stays where it was put.
 static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
-  s->angle_bam = s->vector_bam;
-  if (s->agreed < 0) {
-    s->agreed++;
-    return;
-  }
+  const bool led = s->agreed < 0;
+  const uint16_t slow = led ? LED_SHIFT : MEAN_SHIFT;
   const dq_t emf_q16 = {qc_sub_sat(voltage_q16.d, s->drop_q16), voltage_q16.q};
-  s->mean_q16.d = qc_follow(s->mean_q16.d, emf_q16.d, MEAN_SHIFT);
-  s->mean_q16.q = qc_follow(s->mean_q16.q, emf_q16.q, MEAN_SHIFT);
+  s->mean_q16.d = qc_follow(s->mean_q16.d, emf_q16.d, slow);
+  s->mean_q16.q = qc_follow(s->mean_q16.q, emf_q16.q, slow);
   const int32_t seen = q_mul_add_sat(s->per_emf_q4.d, emf_q16.d, s->per_emf_q4.q, emf_q16.q, 20);
   s->rotor_bpp = qc_follow(s->rotor_bpp, seen, c->filter_shift);
-  s->mean_bpp = qc_follow(s->mean_bpp, s->rotor_bpp, MEAN_SHIFT);
+  s->mean_bpp = qc_follow(s->mean_bpp, led ? seen : s->rotor_bpp, slow);
+  if (s->agreed < 0) {
+    s->rotor_bpp = s->mean_bpp;
+    s->agreed++;
+  }
   const int32_t fast = qc_sub_sat(s->rotor_bpp, s->mean_bpp);
   const int32_t shift = q_clamp(qc_mul_sat(fast, 2 * c->damping_periods, 1), -SHIFT_MAX_BAM, SHIFT_MAX_BAM);
-  s->angle_bam -= (uint32_t)shift;
+  s->angle_bam = s->vector_bam - (uint32_t)shift;
 }
 
 if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16, uint32_t seen_bam,

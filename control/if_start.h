@@ -14,8 +14,8 @@
 // where Lq I is more than half of lambda, that leaves little damping.
 //
 // A vector can also take over a rotor that turns, to keep it where the source sees nothing or to turn it through
-// standstill. Its EMF is known from what it had, and for 3 ms, in which the current is led over, nothing is made of the
-// voltage. The vector then goes to `end_bpp`, in either direction. If the load pulls that rotor out of step it runs away: an
+// standstill. For 4 ms, in which the current is led over, nothing is made of its voltage but the means to begin with.
+// The vector goes to `end_bpp`, in either direction. If the load pulls that rotor out of step it runs away: an
 // EMF of twice that of the last speed, for 50 ms, is a failure.
 //
 // The source takes over when for 300 ms it has been within 80 degrees of the vector and within a quarter of its speed.
@@ -67,10 +67,10 @@ bool if_start_design(if_start_config_t* c, const machine_model_t* m);
 /// angle_bam: where the vector points when it begins to turn.
 void if_start_begin(if_start_t* s, const if_start_config_t* c, uint32_t angle_bam, bool backward);
 
-/// The vector takes over a rotor that turns. angle_bam, speed_bpp: of the rotor; ahead_bam: of it the vector, which is
-/// current_q20 long.
-void if_start_begin_turning(if_start_t* s, const if_start_config_t* c, uint32_t angle_bam, uint32_t ahead_bam,
-                            int32_t current_q20, int32_t speed_bpp);
+/// The vector takes over a rotor that turns. angle_bam: where it points; current_q20: its length; speed_bpp: of the
+/// rotor.
+void if_start_begin_turning(if_start_t* s, const if_start_config_t* c, uint32_t angle_bam, int32_t current_q20,
+                            int32_t speed_bpp);
 
 /// A vector that took over a rotor turns it as it is commanded, or as fast as the source takes it back.
 void if_start_turn_to(if_start_t* s, const if_start_config_t* c, int32_t target_bpp);

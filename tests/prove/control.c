@@ -86,7 +86,7 @@ static void any_vector(if_start_t* s, const if_start_config_t* c) {
   s->drop_q16 = any_from(-TURN_DROP_END_Q16, TURN_DROP_END_Q16);
   s->rotor_bpp = any_i32;
   s->mean_bpp = any_i32;
-  s->agreed = any_from(-30, IF_START_AGREED - 1);
+  s->agreed = any_from(-40, IF_START_AGREED - 1);
   s->waited = any_from(-50, c->wait_periods);
   s->sign = (int16_t)any_from(-1, 1);
 }
@@ -108,14 +108,13 @@ static void turn_vector(int32_t periods) {
   if (!if_start_design(&c, &model)) return;
   if_start_begin(&s, &c, any_u32, any_bool());
   if (any_bool())
-    if_start_begin_turning(&s, &c, any_u32, any_u32, any_from(0, 100 * AMPERES_Q20),
-                           any_from(-TURN_MAX_BPP, TURN_MAX_BPP));
+    if_start_begin_turning(&s, &c, any_u32, any_from(0, 100 * AMPERES_Q20), any_from(-TURN_MAX_BPP, TURN_MAX_BPP));
   if (any_bool()) any_vector(&s, &c);
   if (any_bool()) if_start_renew(&s, &c, any_dq(TURN_COMMAND_END_Q16));
   if (if_start_step(&s, &c, any_dq(TURN_COMMAND_END_Q16), any_u32, any_speed()) != IF_START_PENDING) return;
   //@ assert WITHIN(s.mean_q16.d, TURN_EMF_END_Q16) && WITHIN(s.mean_q16.q, TURN_EMF_END_Q16);
   //@ assert -683565276 <= s.speed_bpp <= 683565276 && 0 <= s.tick <= 65536;
-  //@ assert -30 <= s.agreed < 3000 && -51 <= s.waited <= 100000;
+  //@ assert -40 <= s.agreed < 3000 && -51 <= s.waited <= 100000;
 }
 
 static void limit_and_hold(void) {

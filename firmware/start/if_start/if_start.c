@@ -155,7 +155,7 @@ static void take_rotor(drive_t* d) {
   const int32_t length_q20 = q_clamp(2 * qc_abs_sat(q_q20), if_ramp_config.current_q20, limit_q20);
   const uint32_t ahead_bam = (uint32_t)qc_mul_sat(q_div(q_q20, length_q20, 24), BAM_PER_RAD, 24);
   turn_controllers(&d->control.current, ahead_bam);
-  if_start_begin_turning(&if_ramp, &if_ramp_config, now->angle_bam, ahead_bam, length_q20, now->speed_bpp);
+  if_start_begin_turning(&if_ramp, &if_ramp_config, now->angle_bam + ahead_bam, length_q20, now->speed_bpp);
   if_start_turn_to(&if_ramp, &if_ramp_config, d->control.target_bpp);
   position_turn(&d->estimate, ahead_bam);
   d->control.references.current_q20.d = length_q20;

@@ -17,6 +17,8 @@ _SPIN_MOST = 0.6  # of speed_limit
 _FLUX_SHARE = 0.5  # L I of the vector, of the magnet's flux: beyond that it is hardly damped (control/if_start.h)
 _TORQUE_SHARE = 0.1  # of the vector's torque, for its own acceleration and that behind it
 _RISE_TIME = 0.6  # s, to the last speed
+_LAG = 0.4  # rad that the damping turns the vector back while it gains speed, of the 45 degrees that it may
+_MEAN_TIME = 0.1  # s, of the mean that it takes off (control/if_start.h)
 _AGREES = 0.3  # s that the position source has to agree with the vector before it takes over
 _SPEEDS = (10.0, 6000.0)  # rpm, that the parameter takes
 _SPIN = (30.0, 20000.0)
@@ -72,6 +74,9 @@ def following(told: Mapping[str, float], volts: float) -> dict[str, float]:
     if told.get("inertia"):
         ramp = min(ramp, _TORQUE_SHARE * rpm(torque / told["inertia"]))
     slope = min(speed / _RISE_TIME, ramp)
+    if told.get("inertia"):
+        swing = math.sqrt(pairs * torque / told["inertia"])
+        slope = min(slope, rpm(_LAG * swing / _MEAN_TIME / pairs))
     spin = min(max(spin_most(volts, flux, pairs), _SPIN[0]), _SPIN_MOST * told["speed_limit"], _SPIN[1])
     return {
         "start_method": 1.0,
