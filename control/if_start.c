@@ -62,7 +62,7 @@ void if_start_turn_to(if_start_t* s, const if_start_config_t* c, int32_t target_
 
 // At rest it points a quarter turn behind first: a rotor that is half a turn away from one of them is not from the
 // other. It is led there, and does not swing as it would behind a jump.
-static void step_vector(if_start_t* s, const if_start_config_t* c) {
+static void rest(if_start_t* s, const if_start_config_t* c) {
   const int32_t half = c->align_periods / 2;
   const int32_t lead = half / 2;
   const int32_t led = s->tick - half;
@@ -72,7 +72,9 @@ static void step_vector(if_start_t* s, const if_start_config_t* c) {
     const int32_t step = (int32_t)ANGLE_BAM_QUARTER_TURN / lead;
     s->vector_bam += (uint32_t)((s->end_bpp < 0) ? -step : step);
   }
-  if (s->tick < c->align_periods) return;
+}
+
+static void turn(if_start_t* s, const if_start_config_t* c) {
   s->speed_bpp = q_clamp(s->end_bpp, s->speed_bpp - c->step_bpp, s->speed_bpp + c->step_bpp);
   s->vector_bam += (uint32_t)s->speed_bpp;
 }
@@ -123,8 +125,12 @@ static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
 
 if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16, uint32_t seen_bam,
                                 int32_t seen_bpp) {
-  s->tick = q_min(s->tick + 1, c->align_periods);
-  step_vector(s, c);
+  if (s->tick < c->align_periods) s->tick++;
+  if (s->tick < c->align_periods) {
+    rest(s, c);
+  } else {
+    turn(s, c);
+  }
   damp(s, c, voltage_q16);
   if (!if_start_is_up(s, c)) return (s->waited < -AWAY_MS) ? IF_START_FAILED : IF_START_PENDING;
   const bool near = qc_abs_sat(angle_diff_bam(s->vector_bam, seen_bam)) < ANGLE_80_DEG &&

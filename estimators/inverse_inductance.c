@@ -11,15 +11,15 @@ typedef struct {
 // Y0 and 1/2 dY at no current as the parameters have them.
 static inverse_inductance_t nominal(const machine_model_t* m) {
   const machine_point_t* const p = &m->map.points[0];
-  const inverse_inductance_t y = {p->ydd_q30 / 2 + p->yqq_q30 / 2, (p->ydd_q30 - p->yqq_q30) / 2};
+  const inverse_inductance_t y = {q_shr(p->ydd_q30, 1) + q_shr(p->yqq_q30, 1), q_shr(p->ydd_q30 - p->yqq_q30, 1)};
   return y;
 }
 
 static void trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30) {
   const inverse_inductance_t y = nominal(m);
-  const int32_t mean = q_clamp(mean_q30, -y.mean_q30 / 4, y.mean_q30 / 2);
-  // Both inverse inductances stay positive, whatever the windows say.
-  int32_t most = q_min(2 * y.half_q30, (y.mean_q30 + mean) / 10 * 9);
+  const int32_t mean = q_clamp(mean_q30, -q_shr(y.mean_q30, 2), q_shr(y.mean_q30, 1));
+  // Both inverse inductances stay positive, whatever the windows say: an eighth of the mean is left.
+  int32_t most = q_min(2 * y.half_q30, y.mean_q30 + mean - q_shr(y.mean_q30 + mean, 3));
   int32_t least = q_min(y.half_q30 / 3, most);
   if (y.half_q30 < q_shr(y.mean_q30, WEAK_SHIFT + 1u)) {
     most = q_shr(y.mean_q30, WEAK_SHIFT);
