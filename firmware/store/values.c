@@ -16,9 +16,10 @@ static struct {
 static uint16_t find(uint16_t id) {
   const uint16_t count = parameter_count();
   for (uint16_t k = 0; k < count; k++) {
-    const uint16_t index = self.guess;
-    self.guess = (index + 1u < count) ? (uint16_t)(index + 1u) : 0u;
-    if (parameter_info(index)->id == id) return index;
+    const uint16_t index = (uint16_t)((self.guess + k) % count);
+    if (parameter_info(index)->id != id) continue;
+    self.guess = (uint16_t)((index + 1u) % count);
+    return index;
   }
   return count;
 }

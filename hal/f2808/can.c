@@ -71,10 +71,10 @@ static bool share_mailboxes(const hal_can_group_t* groups, uint16_t group_count)
     if (groups[g].mailboxes == 0u || groups[g].mailboxes >= left) return false;
     left = (uint16_t)(left - groups[g].mailboxes);
     can.groups[g] = groups[g];
-    const uint32_t below = bit_of(left) - 1u;
-    can.group_mailboxes[g] = can.transmit_mailboxes & ~below;
-    can.protected_mailboxes |= can.group_mailboxes[g] & ~bit_of(left);
-    can.transmit_mailboxes = below;
+    const uint32_t lowest = bit_of(left);
+    can.group_mailboxes[g] = can.transmit_mailboxes & ~(lowest - 1u);
+    can.protected_mailboxes |= can.group_mailboxes[g] & ~lowest;
+    can.transmit_mailboxes = lowest - 1u;
   }
   can.group_count = group_count;
   return true;
