@@ -75,7 +75,7 @@ TEST(OneStep, AdmittancesWithinTheirBounds) {
   Motor salient;
   salient.lq = 5.0 * salient.ld;
   const Vector bound = preset(salient, 1.0, 3.0);
-  EXPECT_NEAR(bound.y * (1.0 - 1.0 / 5.0), 0.875 * (1.0 + 1.0 / 5.0), 1e-5);  // nine tenths of the mean
+  EXPECT_NEAR(bound.y * (1.0 - 1.0 / 5.0), 0.875 * (1.0 + 1.0 / 5.0), 1e-5);  // seven eighths of the mean
 }
 
 // e = -dR i - w dpsi: each takes what it can have caused, of current in 4 A and speed in 1/50 rad per period, with a
