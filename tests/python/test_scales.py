@@ -102,6 +102,26 @@ def test_the_scales_follow_from_the_ranges_of_the_board(amperes, volts, expected
     assert nameplate.scales({"adc": {"current_range": amperes, "voltage_range": volts}}) == expected
 
 
+@pytest.mark.parametrize(
+    ("inertia", "expected"),
+    [
+        (6.8e-5, {"voltage_scale": 1.0}),
+        (6.7e-5 * 2, {"voltage_scale": 1.0}),
+        (6.7e-5, {}),
+        (3.3e-5, {"current_scale": -1.0}),
+        (1.6e-5, {"voltage_scale": -1.0, "current_scale": -1.0}),
+        (1e-6, {"voltage_scale": -1.0, "current_scale": -2.0}),
+    ],
+)
+def test_a_light_rotor_has_lower_scales(inertia, expected):
+    plant = {
+        "adc": {"current_range": 20.0, "voltage_range": 465.0},
+        "machine": {"pole_pairs": 2.0},
+        "mechanics": {"inertia": inertia},
+    }
+    assert nameplate.scales(plant) == expected
+
+
 def test_a_bus_is_described_in_the_steps_of_its_node():
     plain, scaled = (can.cantools.database.load_string(can.text_of([], 3, scales)) for scales in ((0, 0), (5, -2)))
     for message in plain.messages:

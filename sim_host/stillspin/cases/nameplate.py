@@ -51,19 +51,31 @@ _SCALES = (
     (boards.VOLTAGE, "voltage_range", 225.0, 450.0),
 )
 """Parameters that follow from the board's range: at 0 it is within the two."""
+_LIGHTEST = 1.304e-5
+"""kg m² for each pole pair, at both scales 0: a lighter rotor's acceleration is beyond its format (control/machine_model.h)."""
+_LIGHTER = 1.3
+"""So much lighter than its nameplate a rotor may turn out."""
+_STEPS = 2
+"""That a scale may be below its board's range, whose values then go up to a quarter of their formats."""
 STATED = ("current_limit", "speed_limit")
 """Parameters that follow from nothing: the motor's file has them."""
 
 
 def scales(plant: core.Plant) -> dict[str, float]:
-    """The powers of two, nearest to none, that bring the sensors' ranges to where the formats expect them."""
+    """The powers of two, nearest to none, that bring the sensors' ranges to where the formats expect them.
+
+    A torque has both in its unit: a rotor that is too light for the formats has lower ones, the voltage's first.
+    """
     found = {}
     for name, key, least, most in _SCALES:
         value = float(plant.get("adc", {}).get(key, least))
-        scale = max(0, math.ceil(math.log2(value / most))) + min(0, math.floor(math.log2(value / least)))
-        if scale:
-            found[name] = float(scale)
-    return found
+        found[name] = max(0, math.ceil(math.log2(value / most))) + min(0, math.floor(math.log2(value / least)))
+    inertia = float(plant.get("mechanics", {}).get("inertia", 0.0))
+    pairs = float(plant.get("machine", {}).get("pole_pairs", 1.0))
+    for name in (boards.VOLTAGE, boards.CURRENT) * _STEPS if inertia > 0.0 else ():
+        if inertia / pairs < _LIGHTER * _LIGHTEST * 2.0 ** sum(found.values()):
+            found[name] -= 1
+    return {name: float(scale) for name, scale in found.items() if scale}
 
 
 def following(plant: core.Plant, stated: Mapping[str, float]) -> dict[str, float]:

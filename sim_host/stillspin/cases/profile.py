@@ -19,6 +19,7 @@ from stillspin.entry import Entry, Value
 from stillspin.errors import InputError, did_you_mean
 from stillspin.scales import SCALES
 
+_BY_SCALES = ("adc", "machine", "mechanics", "parameters")
 
 @dataclass(frozen=True)
 class Profile:
@@ -117,15 +118,17 @@ def say_not_stated(chosen: Profile) -> None:
 
 
 def _scales(motor: str, profile_name: str) -> dict[str, float]:
-    """What the ranges of the board's sensors ask for, or the files state: by which all else in them is read."""
+    """What the board's sensors and the rotor ask for, or the files state: by which all else in them is read."""
     found: dict[str, float] = {}
     for kind, name in (("motors", motor), ("profiles", profile_name)):
         data = toml_table.read(resources.find(kind, name)).items()
-        adc, stated = (table if isinstance(table := data.get(key), dict) else {} for key in ("adc", "parameters"))
-        ranges: core.Plant = {
-            "adc": {key: each for key, each in adc.items() if isinstance(each, int | float) and each > 0}
+        tables = {key: table if isinstance(table := data.get(key), dict) else {} for key in _BY_SCALES}
+        stated = tables.pop("parameters")
+        sizes: core.Plant = {
+            section: {key: each for key, each in table.items() if isinstance(each, int | float) and each > 0}
+            for section, table in tables.items()
         }
-        said = {**nameplate.scales(ranges), **stated} if kind == "motors" else stated
+        said = {**nameplate.scales(sizes), **stated} if kind == "motors" else stated
         found |= {key: value for key in SCALES if isinstance(value := said.get(key), int | float)}
     return found
 
