@@ -8,10 +8,10 @@
 #define MEAN_SHIFT 10u            // 100 ms
 #define FILTER_LEAST 3u
 #define FILTER_MOST 8u
-#define AWAY_SHARE 16   // times least_q16, an eighth of the EMF at the last speed: twice that
-#define AWAY_MS 50      // a change of current takes less
-#define LED_PERIODS 40  // 7/a of the current control at 1800 rad/s
-#define LED_SHIFT 3u    // 0.8 ms
+#define AWAY_SHARE 16      // times least_q16, an eighth of the EMF at the last speed: twice that
+#define AWAY_MS 50         // a change of current takes less
+#define SETTLE_PERIODS 40  // 7/a of the current control at 1800 rad/s
+#define SETTLE_SHIFT 3u    // 0.8 ms
 
 // Lq I/(lambda w0) in periods, as the next power of two.
 static uint16_t filter_shift(const if_start_config_t* c, const machine_model_t* m) {
@@ -53,7 +53,7 @@ void if_start_begin_turning(if_start_t* s, const if_start_config_t* c, uint32_t 
   s->current_q20 = current_q20;
   s->tick = c->align_periods;
   s->speed_bpp = speed_bpp;
-  s->agreed = -LED_PERIODS;
+  s->agreed = -SETTLE_PERIODS;
 }
 
 void if_start_turn_to(if_start_t* s, const if_start_config_t* c, int32_t target_bpp) {
@@ -65,10 +65,10 @@ void if_start_turn_to(if_start_t* s, const if_start_config_t* c, int32_t target_
 static void rest(if_start_t* s, const if_start_config_t* c) {
   const int32_t half = c->align_periods / 2;
   const int32_t lead = half / 2;
-  const int32_t led = s->tick - half;
+  const int32_t passed = s->tick - half;
   if (s->tick < half) s->current_q20 = c->current_q20 / half * s->tick;
   if (s->tick == half) s->current_q20 = c->current_q20;
-  if (led >= 0 && led < lead) {
+  if (passed >= 0 && passed < lead) {
     const int32_t step = (int32_t)ANGLE_BAM_QUARTER_TURN / lead;
     s->vector_bam += (uint32_t)((s->end_bpp < 0) ? -step : step);
   }
@@ -103,17 +103,17 @@ void if_start_renew(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16)
   s->waited = (across_q16 / AWAY_SHARE > c->least_q16) ? q_min(s->waited, 0) - 1 : 0;
 }
 
-// While a current is led over, its inductance and the drop that it has not yet are no speed: until it is there the
-// means follow at once, and the vector stays where it was put.
+// While a current settles, its inductance and the drop that it has not yet are no speed: the means follow within eight
+// periods, and the vector stays where it was put.
 static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
-  const bool led = s->agreed < 0;
-  const uint16_t slow = led ? LED_SHIFT : MEAN_SHIFT;
+  const bool settling = s->agreed < 0;
+  const uint16_t slow = settling ? SETTLE_SHIFT : MEAN_SHIFT;
   const dq_t emf_q16 = {qc_sub_sat(voltage_q16.d, s->drop_q16), voltage_q16.q};
   s->mean_q16.d = qc_follow(s->mean_q16.d, emf_q16.d, slow);
   s->mean_q16.q = qc_follow(s->mean_q16.q, emf_q16.q, slow);
   const int32_t seen = q_mul_add_sat(s->per_emf_q4.d, emf_q16.d, s->per_emf_q4.q, emf_q16.q, 20);
   s->rotor_bpp = qc_follow(s->rotor_bpp, seen, c->filter_shift);
-  s->mean_bpp = qc_follow(s->mean_bpp, led ? seen : s->rotor_bpp, slow);
+  s->mean_bpp = qc_follow(s->mean_bpp, settling ? seen : s->rotor_bpp, slow);
   if (s->agreed < 0) {
     s->rotor_bpp = s->mean_bpp;
     s->agreed++;
@@ -132,6 +132,7 @@ if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t 
     turn(s, c);
   }
   damp(s, c, voltage_q16);
+  if (s->agreed < 0) return IF_START_PENDING;
   if (!if_start_is_up(s, c)) return (s->waited < -AWAY_MS) ? IF_START_FAILED : IF_START_PENDING;
   const bool near = qc_abs_sat(angle_diff_bam(s->vector_bam, seen_bam)) < ANGLE_80_DEG &&
                     qc_abs_sat(qc_sub_sat(seen_bpp, s->speed_bpp)) < c->speed_bpp / 4;

@@ -14,7 +14,8 @@
 // where Lq I is more than half of lambda, that leaves little damping.
 //
 // A vector can also take over a rotor that turns, to keep it where the source sees nothing or to turn it through
-// standstill. For 4 ms, in which the current is led over, nothing is made of its voltage but the means to begin with.
+// standstill. For 4 ms, in which a current control of 1000 rad/s or more has settled, its voltage tells no speed, only
+// the means to begin with.
 // The vector goes to `end_bpp`, in either direction. If the load pulls that rotor out of step it runs away: an
 // EMF of twice that of the last speed, for 50 ms, is a failure.
 //
@@ -29,7 +30,7 @@
 
 typedef struct {
   int32_t current_q20;      // length of the vector, A, up to 100
-  int32_t align_periods;    // at rest, over the first half a quarter turn behind and rising, 2..50000
+  int32_t align_periods;    // at rest, over the first half a quarter turn behind and rising, 4..50000
   int32_t step_bpp;         // change of its speed per period, at least 1, up to 1 rad
   int32_t speed_bpp;        // at the end, positive, up to 1 rad per period
   int32_t wait_periods;     // there, until the source agrees
@@ -55,7 +56,7 @@ typedef struct {
   int32_t rotor_bpp;    // speed of the rotor by the EMF, filtered
   int32_t mean_bpp;     // its mean
   int32_t waited;       // periods; below 0: ms in which the EMF has been too large
-  int16_t agreed;       // periods; below 0: until the current of a rotor that was taken over is there
+  int16_t agreed;       // periods; below 0: until the current of a rotor that was taken over has settled
   int16_t sign;         // of the speed that the mean belongs to
   bool took_over;       // a rotor that turned already
 } if_start_t;

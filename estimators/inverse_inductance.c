@@ -21,7 +21,7 @@ static void trim(machine_model_t* m, int32_t mean_q30, int32_t half_q30) {
   // Both inverse inductances stay positive, whatever the windows say: an eighth of the mean is left.
   int32_t most = q_min(2 * y.half_q30, y.mean_q30 + mean - q_shr(y.mean_q30 + mean, 3));
   int32_t least = q_min(y.half_q30 / 3, most);
-  if (y.half_q30 < q_shr(y.mean_q30, WEAK_SHIFT + 1u)) {
+  if (inverse_inductance_is_weak(m)) {
     most = q_shr(y.mean_q30, WEAK_SHIFT);
     least = -most;
   }
@@ -38,6 +38,7 @@ void inverse_inductance_step(machine_model_t* m, const regression_t* r, q_invers
 
 void inverse_inductance_preset(machine_model_t* m, int32_t mean_q30, int32_t half_q30) {
   const inverse_inductance_t y = nominal(m);
-  trim(m, qc_sub_sat(mean_q30, y.mean_q30), qc_sub_sat(half_q30, y.half_q30));
+  // What little shows at rest is no axis.
+  trim(m, qc_sub_sat(mean_q30, y.mean_q30), inverse_inductance_is_weak(m) ? 0 : qc_sub_sat(half_q30, y.half_q30));
   machine_model_settle(m);
 }

@@ -11,7 +11,7 @@
 
 #include "estimators/regression.h"
 
-/// Whether the parameters say next to no saliency: Lq less than an eighth above Ld, or 1/2 dY below a sixteenth of Y0.
+/// Whether the parameters say next to no saliency: Lq less than an eighth above Ld.
 static inline bool inverse_inductance_is_weak(const machine_model_t* m) {
   const machine_point_t* const p = &m->map.points[0];
   return p->ydd_q30 - p->yqq_q30 < q_shr(p->yqq_q30, 3);

@@ -90,6 +90,7 @@ PARTS = {
                 "firmware/config/config.c",
             ),
             "firmware/boot/main.c",
+            "firmware/boot/serve.c",
         ),
         FIRMWARE,
     ),
@@ -102,7 +103,7 @@ PARTS = {
     ),
     "firmware/link": Part(
         (
-            *("firmware/link/*.c", "firmware/base/octets.c", "firmware/base/crc.c"),
+            *("firmware/link/*.c", "firmware/base/octets.c", "firmware/base/crc.c", "firmware/base/crc_block.c"),
             *("firmware/api/comm_watchdog.c", "firmware/api/status.c"),
             *("firmware/hil/*.c", "firmware/scope/*.c"),
         ),

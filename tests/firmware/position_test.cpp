@@ -127,6 +127,25 @@ TEST_F(Position, WhatWasNotNearIsNotLearntFromLater) {
   }
 }
 
+// An axis that next to nothing tells is not asked: Lq less than an eighth above Ld, as the parameters have it.
+TEST_F(Position, WithNextToNoSaliencyTheRegressionIsNotAsked) {
+  for (const double share : {1.0, 1.12, 1.13}) {
+    for (const bool near : {true, false}) {
+      run_with(POSITION_OBSERVER);
+      inside::scheduled_slot() = SLOT_LOOK;
+      inside::is_near() = near;
+      machine_point_t& p = inside::model().map.points[0];
+      p.ydd_q30 = static_cast<std::int32_t>(share * p.yqq_q30);
+      regression_t& r = inside::observer().regression;
+      r = {};
+      r.spread_q8 = raw(40000.0, 8);
+      r.cross_q16 = static_cast<std::int32_t>(std::ldexp(0.5 * inside::model().yd_q30 * r.spread_q8, -22));
+      inside::estimate_step();
+      EXPECT_EQ(inside::is_near(), near && share < 1.125) << share;
+    }
+  }
+}
+
 // The flux is alone when the blend has come up all the way and the polarity is no question any more.
 TEST_F(Position, TheFluxIsAloneAtTheBlendsEndAndWithAKnownPolarity) {
   NEEDS("sources/flux");

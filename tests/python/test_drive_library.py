@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from stillspin.drive import Drive, Trigger
+from stillspin.drive.protocol import Words
 from stillspin.link.errors import DriveError, LinkError
 
 CALLS = {
@@ -38,6 +39,7 @@ CALLS = {
     "has_faults": lambda drive: drive.has_faults(),
     "signals": lambda drive: drive.signals("speed"),
     "words": lambda drive: drive.words(3, 1),
+    "has_words": lambda drive: drive.has_words(Words.PHASE),
     "stream": lambda drive: drive.stream(["speed"]),
     "log": lambda drive: drive.log("speed", duration=0.1),
     "scope_arm": lambda drive: drive.capture("speed"),

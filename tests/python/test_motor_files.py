@@ -177,7 +177,7 @@ def test_a_surface_magnet_motor_starts_against_a_load_and_carries_it(native, nam
 
 
 def test_the_vector_follows_from_the_nameplate():
-    """The share of the EMF, the damping's bound and the slope, each by hand."""
+    """The share of the EMF, the damping's bound and the slope, by the time and by the swing, each by hand."""
     told = {
         "inductance_d": 1.0,
         "inductance_q": 1.05,
@@ -192,9 +192,13 @@ def test_the_vector_follows_from_the_nameplate():
     assert found["start_method"] == 1.0
     assert found["if_current"] == pytest.approx(0.5 * 0.02 / 1.05e-3, abs=0.01)
     assert found["if_speed"] == pytest.approx(5.0 / 0.02 / 5.0 * 30.0 / np.pi, abs=1.0)
-    assert found["if_acceleration"] == pytest.approx(found["if_speed"] / 0.6, abs=1.0)
+    swing = np.sqrt(5.0 * 1.5 * 5.0 * 0.02 * 9.52 / 1e-3)
+    assert found["if_acceleration"] == pytest.approx(4.0 * swing / 5.0 * 30.0 / np.pi, abs=1.0)
+    light = open_loop.following({**told, "inertia": 1e-4}, 50.0)
+    assert light["if_acceleration"] == pytest.approx(light["if_speed"] / 0.6, abs=1.0)
     assert found["spin_speed"] == pytest.approx(0.145 * 50.0 / 0.02 / 5.0 * 30.0 / np.pi, abs=2.0)
     assert open_loop.following({**told, "inductance_q": 1.15}, 50.0) == {}
+    assert found["adapt_time"] == 50.0
     assert found["speed_ramp"] == pytest.approx(0.1 * 1.5 * 5.0 * 0.02 * 9.52 / 1e-3 * 30.0 / np.pi, abs=1.0)
     heavy = open_loop.following({**told, "inertia": 0.03}, 50.0)
     assert heavy["if_acceleration"] == heavy["speed_ramp"] == 45.0
@@ -231,9 +235,9 @@ def test_the_vector_follows_from_the_nameplate():
             "inductances, map, speed_limit; inductance_d = 0.15 mH: at least",
         ),
         (
-            ("current_limit = 5.0", "current_limit = 19.0\ncurrent_bandwidth = 2600"),
+            ("current_limit = 5.0", "current_limit = 21.0\ncurrent_bandwidth = 2600"),
             "current loop",
-            "lower current_bandwidth to 2573 rad/s",
+            "lower current_bandwidth to 2497 rad/s",
         ),
         (
             ("[adc]", "[mechanics]\ninertia = 1e-5\n[adc]"),

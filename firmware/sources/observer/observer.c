@@ -21,7 +21,7 @@ estimator_output_t source_observer(const drive_t* d, drive_estimate_t* e, estima
   if (d->schedule.slot == SLOT_LOOK) {
     const int32_t error_bam = avv_angle_error(&o->regression, &e->model);
     e->avv.error_bam = error_bam;
-    // An axis that hardly shows says nothing of the angle, which the EMF has told.
+    // An axis that hardly shows says nothing of the angle; a start at rest is refused there, and the EMF tells it.
     if (q_abs_sat(error_bam) > AVV_NEAR_BAM && !inverse_inductance_is_weak(&e->model)) e->is_near = false;
   }
   source_learn(d, e, &o->regression);

@@ -105,7 +105,8 @@ static int32_t mean_length_q20(const drive_t* d) {
   }
   const abc_t legs = {leg[0], leg[1], leg[2]};
   const int32_t along_q28 = qc_mul(frame_turned(frame_clarke3(legs), if_ramp.angle_bam).d, PER_FOUR_PERIODS_Q58, 30);
-  return if_ramp.current_q20 + qc_mul(qc_mul(d->samples.link_q16, d->estimate.model.yd_q30, 26), along_q28, 28);
+  const int32_t swing_q20 = qc_mul_sat(d->samples.link_q16, d->estimate.model.yd_q30, 26);  // of the link over a period
+  return q_max(if_ramp.current_q20 + qc_mul(swing_q20, along_q28, 28), if_ramp.current_q20 / 2);
 }
 
 // A winding at rest has no EMF: the vector's voltage is that of the resistance, cold or warm. Where the rotor is seen

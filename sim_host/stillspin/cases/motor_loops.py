@@ -13,6 +13,7 @@ _SPEED_PERIOD = 1e-3  # s
 _MARGIN_LEAST = 30.0  # degrees
 _SWING_LEAST = 2.0  # times the frequency at which EMF, inductance and inertia swing
 _APART_LEAST = 5.0  # times the speed loop's crossing
+_CORNER_MOST = 0.5  # of a step
 _PI, _MACHINE_CORNER = 1, 1  # speed_law, current_corner
 
 
@@ -25,6 +26,7 @@ def current(motor: Described) -> Finding:
     real = told * (1.0 + (limit / knee) ** 2)  # the plant's Lqq is Lq / (1 + (iq / 2 rated)^2)
     pole = motor.plant("machine", "resistance") / motor.plant("machine", "inductance_d")
     corner = pole if motor.told("current_corner") == _MACHINE_CORNER else max(told / 4.0, pole)
+    corner = min(corner, _CORNER_MOST / (PERIOD * motor.told("current_divider")))
     turned = math.atan(corner / real) - math.atan(pole / real)
     margin = 90.0 - math.degrees(real * delay + turned)
     words = (

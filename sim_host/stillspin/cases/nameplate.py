@@ -52,7 +52,7 @@ _SCALES = (
 )
 """Parameters that follow from the board's range: at 0 it is within the two."""
 _LIGHTEST = 1.304e-5
-"""kg m² for each pole pair, at both scales 0: a lighter rotor's acceleration is beyond its format (control/machine_model.h)."""
+"""kg m² for each pole pair, at both scales 0: a lighter rotor's acceleration is beyond its format."""
 _LIGHTER = 1.3
 """So much lighter than its nameplate a rotor may turn out."""
 _STEPS = 2

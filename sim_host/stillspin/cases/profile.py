@@ -21,6 +21,7 @@ from stillspin.scales import SCALES
 
 _BY_SCALES = ("adc", "machine", "mechanics", "parameters")
 
+
 @dataclass(frozen=True)
 class Profile:
     """A named plant with its motor. It holds only the entries and firmware parameters that the two state.

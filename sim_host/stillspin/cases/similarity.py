@@ -180,8 +180,8 @@ def noise(plant: core.Plant) -> float:
 
     The saliency's axis turns with the current, and until commissioning has measured that an observer takes the turn for
     one of the shaft. The faster it believes an angle that is seen sharply, and the less the current that answers
-    accelerates the shaft, the more of a turn follows from a turn. Where the EMF alone shows the shaft, the noise is at
-    least what an inductance that is off by a twentieth makes of a pulse.
+    accelerates the shaft, the more of a turn follows from a turn. Where the EMF alone shows the shaft, it goes by
+    what an inductance that is off by a twentieth makes of a pulse.
     """
     size = of(plant)
     if size is None:
