@@ -3,11 +3,11 @@
 // modulator really gives.
 //
 // The corner is not always the machine's own R/L, as internal-model control has it: what the dead time leaves over is a
-// voltage disturbance that turns with the current, and with R/L it would decay in L/R, 24 ms on the q-axis of motor A, far too slow
-// for the speed loop. Where R/L is above a/4 = 450 rad/s, as on small motors (up to 5000 rad/s), with a/4 the current
-// would follow by a/4 K_p/(R + K_p) only. The corner ends at half a step. The measurement is taken over the last period and the voltage acts in the middle of the next
-// but one: two periods of delay. a = 1800 rad/s leaves about 57 degrees of phase margin at 10 kHz; more than 2600 rad/s
-// is refused.
+// voltage disturbance that turns with the current, and with R/L it would decay in L/R, 24 ms on the q-axis of motor A,
+// far too slow for the speed loop. Where R/L is above a/4 = 450 rad/s, as on small motors (up to 5000 rad/s), with a/4
+// the current would follow by a/4 K_p/(R + K_p) only. The corner ends at half a step. The measurement is taken over the
+// last period and the voltage acts in the middle of the next but one: two periods of delay. a = 1800 rad/s leaves about
+// 57 degrees of phase margin at 10 kHz; more than 2600 rad/s is refused.
 //
 // The controllers may step every n-th period only, the voltage still acting from the next reload on; holding it for n
 // periods adds (n - 1)/2 periods of delay, and the largest bandwidth falls in proportion. Seed paper B steps at 5 kHz

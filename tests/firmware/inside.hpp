@@ -139,6 +139,7 @@ inline auto& weakening_q20() { return drive.control.weakening_q20; }
 inline auto& modulation() { return drive.modulation; }
 inline auto& modulated_q16() { return drive.modulation.command_q16; }
 inline auto& modulator() { return drive.modulation.state; }
+inline auto& patterns() { return drive.modulation.patterns; }
 inline auto& running_pattern() { return drive.modulation.patterns[drive.modulation.running]; }
 inline auto& sampled_pattern() { return drive.modulation.patterns[drive.modulation.sampled]; }
 

@@ -193,7 +193,7 @@ TEST_F(VectorBack, TheMeanCurrentOfARestingVectorHasTheRipple) {
   for (int n = 0; n < 2; ++n) {
     for (std::uint16_t leg = 0; leg < 3; ++leg) {
       const double rise = edges[n][leg][0], fall = edges[n][leg][1];
-      svpwm_put_pulse(&drive.modulation.patterns[n].pulses, leg, static_cast<int>(rise), static_cast<int>(fall - rise));
+      svpwm_put_pulse(&inside::patterns()[n].pulses, leg, static_cast<int>(rise), static_cast<int>(fall - rise));
       for (int tick = 0; tick < 10000; ++tick) {
         const double t = tick + 0.5;
         mean[leg] += (std::clamp(t - rise, 0.0, fall - rise) - (fall - rise) * t / 1e4) / 1e8 / 2.0;
