@@ -85,7 +85,7 @@ static inline ab_t frame_back(dq_t w, rotation_t r) {
   return v;
 }
 
-/// The larger one of two components, as it is without its sign.
+/// The larger magnitude of two components.
 int32_t frame_largest(int32_t a, int32_t b);
 
 /// A vector of the stationary frame in one at this angle, and back.

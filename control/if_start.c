@@ -2,10 +2,9 @@
 
 #include "hal/qmath/qcall.h"
 
-#define TURNS_Q32_PER_RAD 683565276L  // 2^32 / 2 pi
 #define ANGLE_80_DEG 954437177L
-#define SHIFT_MAX_BAM 536870912L  // 45 degrees
-#define MEAN_SHIFT 10u            // 100 ms
+#define SHIFT_MAX_BAM ((int32_t)ANGLE_BAM_EIGHTH_TURN)
+#define MEAN_SHIFT 10u  // 100 ms
 #define FILTER_LEAST 3u
 #define FILTER_MOST 8u
 #define AWAY_SHARE 16      // times least_q16, an eighth of the EMF at the last speed: twice that
@@ -27,10 +26,10 @@ bool if_start_design(if_start_config_t* c, const machine_model_t* m) {
   // Acceleration at a right angle, bpp per period: (w0 T)^2 in units of 2 pi / 2^32.
   const int32_t torque_q16 = qc_mul(m->torque_q24, c->current_q20, 28);
   const int32_t accel_bpp = qc_mul_sat(torque_q16, m->accel_q12, 28);
-  c->damping_periods = (int32_t)q_sqrt64((uint64_t)(TURNS_Q32_PER_RAD / q_max(accel_bpp, 1)));
+  c->damping_periods = (int32_t)q_sqrt64((uint64_t)(ANGLE_BAM_PER_RAD / q_max(accel_bpp, 1)));
   c->filter_shift = filter_shift(c, m);
   // w = v / lambda: rad per period of v over lambda/T, as binary angle.
-  c->per_emf_q4 = q_div(TURNS_Q32_PER_RAD, m->emf_q16, 20);
+  c->per_emf_q4 = q_div(ANGLE_BAM_PER_RAD, m->emf_q16, 20);
   c->resistance_q24 = m->nominal_rs_q24;
   c->least_q16 = q_div(c->speed_bpp / 8, c->per_emf_q4, 20);
   return q_in_range(c->damping_periods, 10, 10000);
@@ -62,7 +61,7 @@ void if_start_turn_to(if_start_t* s, const if_start_config_t* c, int32_t target_
 
 // At rest it points a quarter turn behind first: a rotor that is half a turn away from one of them is not from the
 // other. It is led there, and does not swing as it would behind a jump.
-static void rest(if_start_t* s, const if_start_config_t* c) {
+static void step_alignment(if_start_t* s, const if_start_config_t* c) {
   const int32_t half = c->align_periods / 2;
   const int32_t lead = half / 2;
   const int32_t passed = s->tick - half;
@@ -74,7 +73,7 @@ static void rest(if_start_t* s, const if_start_config_t* c) {
   }
 }
 
-static void turn(if_start_t* s, const if_start_config_t* c) {
+static void step_turning(if_start_t* s, const if_start_config_t* c) {
   s->speed_bpp = q_clamp(s->end_bpp, s->speed_bpp - c->step_bpp, s->speed_bpp + c->step_bpp);
   s->vector_bam += (uint32_t)s->speed_bpp;
 }
@@ -127,9 +126,9 @@ if_start_result_t if_start_step(if_start_t* s, const if_start_config_t* c, dq_t 
                                 int32_t seen_bpp) {
   if (s->tick < c->align_periods) s->tick++;
   if (s->tick < c->align_periods) {
-    rest(s, c);
+    step_alignment(s, c);
   } else {
-    turn(s, c);
+    step_turning(s, c);
   }
   damp(s, c, voltage_q16);
   if (s->agreed < 0) return IF_START_PENDING;

@@ -5,9 +5,9 @@
 #include "hal/qmath/qcall.h"
 
 #define ONE_Q20 1048576L
-#define BAM_PER_UNIT_Q7 1367130551L  // 2^-6 rad
-#define BPP_PER_UNIT_Q12 683565276L  // 2^-12 rad per period
-#define ACCEL_Q8_PER_UNIT 667544L    // 2^-18 rad per period^2
+#define BAM_PER_UNIT_Q7 1367130551L         // 2^-6 rad
+#define BPP_PER_UNIT_Q12 ANGLE_BAM_PER_RAD  // 2^-12 rad per period
+#define ACCEL_Q8_PER_UNIT 667544L           // 2^-18 rad per period^2
 #define ANGLE_VARIANCE (128L * ONE_Q20)
 #define SPEED_VARIANCE (64L * ONE_Q20)
 #define LOAD_VARIANCE (64L * ONE_Q20)

@@ -4,8 +4,7 @@
 
 #define SIXTY_DEGREES_BAM 715827883L
 #define FIFTEEN_DEGREES_BAM 178956971L
-#define EMF_ERROR_Q16 65536L    // V: drops and noise
-#define BPP_PER_RAD 683565276L  // 2^32 / 2 pi
+#define EMF_ERROR_Q16 65536L  // V: drops and noise
 
 void flying_add(flying_pulse_t* s, const machine_model_t* m, const estimator_window_t* w, int32_t tick) {
   const ab_t way_q20 = w->change_q19;  // half of it lies between the middle of the window and its bursts
@@ -47,13 +46,13 @@ flying_emf_t flying_evaluate(const flying_pulse_t* s, const machine_model_t* m) 
   const int32_t size_q20 = qc_mul_sat(m->yq_q30, m->emf_q16, 26);  // of the slope, A per rad
   const int32_t lag_q24 = qc_mul_sat(q_div(middle_q20, size_q20, 24), m->k_dq_q24, 24);
   const flying_emf_t e = {q_atan2(beta, alpha), q_hypot(alpha, beta), s->first_tick / 2 + s->last_tick / 2,
-                          qc_mul_sat(lag_q24, BPP_PER_RAD, 24)};
+                          qc_mul_sat(lag_q24, ANGLE_BAM_PER_RAD, 24)};
   return e;
 }
 
 // Magnitude of the speed that makes this EMF, binary angle per period.
 int32_t flying_speed(int32_t size_q16, const machine_model_t* m) {
-  return qc_mul_sat(q_div(size_q16, m->emf_q16, 30), BPP_PER_RAD, 30);
+  return qc_mul_sat(q_div(size_q16, m->emf_q16, 30), ANGLE_BAM_PER_RAD, 30);
 }
 
 int32_t flying_pause(const flying_emf_t* e, const machine_model_t* m, int32_t least, int32_t most) {
@@ -71,7 +70,7 @@ bool flying_resolve(const flying_emf_t* first, const flying_emf_t* second, const
   const uint32_t behind = quarter - (uint32_t)second->lag_bam;
   rotor->angle_bam = second->direction_bam + ((turn >= 0) ? 0u - behind : behind);
   const int32_t size = q_min(first->size_q16, second->size_q16);
-  const int32_t error_bam = qc_mul_sat(q_div(EMF_ERROR_Q16, size, 16), BPP_PER_RAD, 16);
+  const int32_t error_bam = qc_mul_sat(q_div(EMF_ERROR_Q16, size, 16), ANGLE_BAM_PER_RAD, 16);
   rotor->sigma_q8 = q_div(qc_abs_sat(turn), q_max(error_bam, 1), 8);
   const int32_t expected = flying_speed(second->size_q16, m) / 2 + flying_speed(first->size_q16, m) / 2;
   const int32_t seen = qc_abs_sat(rotor->speed_bpp);

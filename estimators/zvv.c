@@ -6,7 +6,6 @@
 #define LOAD_SHARE_Q30 5368709L     // 1/200: a low-pass of 20 ms
 #define INTEGRAL_LIMIT 2000000000L
 #define ONE_Q26 67108864L
-#define RAD_Q24_TO_BAM 683565276L  // 2^32 / (2 pi), for a product shifted by 24
 
 void zvv_preset(zvv_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8) {
   s->angle_bam = angle_bam;
@@ -96,7 +95,7 @@ estimator_output_t zvv_step(zvv_t* s, const zvv_config_t* c, const estimator_inp
   const bool usable = seen && kq_q20 != 0;
   if (usable) {
     const int32_t error_q24 = q_limit(q_div(s->deviation_q20, kq_q20, 24), ERROR_LIMIT_Q24);
-    correct(s, c, q_mul(error_q24, RAD_Q24_TO_BAM, 29), in->torque_accel_q8);
+    correct(s, c, q_mul(error_q24, ANGLE_BAM_PER_RAD, 29), in->torque_accel_q8);
     s->waited = 0;
   }
   const estimator_output_t out = {s->angle_bam, alone ? q_shr(s->integral_q8bpp, 8) : s->speed_bpp, s->load_accel_q8,

@@ -27,6 +27,9 @@ static const uint16_t sent[] = {SIGNAL_PLACE(current_d),           SIGNAL_PLACE(
 
 #define VALUES (sizeof sent / sizeof sent[0])
 
+// The second message's fields are behind those of the first.
+typedef char fields_are_in_a_row[(CAN_TELEMETRY_2_VOLTAGE_Q == CAN_TELEMETRY_1_CURRENT_D + (int)VALUES - 1) ? 1 : -1];
+
 void telemetry_values(hal_can_frame_t* first, hal_can_frame_t* second) {
   int32_t values[VALUES];
   (void)drive_signals_copy(sent, VALUES, values);

@@ -10,13 +10,12 @@
 #include "hal/hal_adc.h"
 #include "hal/qmath/qcall.h"
 
-#define K0_MAX_Q20 1048576000L        // lambda/L of 1000 A
-#define CRAWL_MAX_RPM_Q16 655360L     // where cogging is learnt
-#define HOLD_BELOW_RPM_Q16 1310720L   // 20 rpm
-#define RELUCTANCE_END_Q16 1671168L   // 25.5 N m/A with the full scale, half of the largest current
-#define EDGE_BAND_Q20 524288L         // half an ampere of ripple may be predicted wrong
-#define RAD_PER_RPM_Q47 1473799531L   // 2 pi / 60 * 100 us
-#define TURNS_Q32_PER_RAD 683565276L  // 2^32 / 2 pi
+#define K0_MAX_Q20 1048576000L       // lambda/L of 1000 A
+#define CRAWL_MAX_RPM_Q16 655360L    // where cogging is learnt
+#define HOLD_BELOW_RPM_Q16 1310720L  // 20 rpm
+#define RELUCTANCE_END_Q16 1671168L  // 25.5 N m/A with the full scale, half of the largest current
+#define EDGE_BAND_Q20 524288L        // half an ampere of ripple may be predicted wrong
+#define RAD_PER_RPM_Q47 1473799531L  // 2 pi / 60 * 100 us
 #define ONE_Q24 16777216L
 #define MILLIHENRY_Q30 1099511628L  // mH (Q20) to H (Q30): 1.024
 
@@ -156,7 +155,7 @@ static bool load_control(drive_config_t* c) {
   c->ramp_step_bpp = qc_mul_sat(p->speed_ramp, c->bpp_per_rpm_q8, 16) / 1000;
   // A sixth of the saliency (Lq - Ld)/(Lq + Ld), over the flux: at saliency_current at least an eighth of it is left.
   const int32_t sixth_q30 = q_div((p->inductance_q - p->inductance_d) / 6, p->inductance_q + p->inductance_d, 30);
-  c->salient_bpp_q4 = qc_mul_sat(q_div(sixth_q30, c->nameplate.emf_q16, 20), TURNS_Q32_PER_RAD, 30);
+  c->salient_bpp_q4 = qc_mul_sat(q_div(sixth_q30, c->nameplate.emf_q16, 20), ANGLE_BAM_PER_RAD, 30);
   c->freed_by_q8 = freed_by_q8(&c->nameplate.map, sixth_q30);
   c->salient_q20 = p->saliency_current;
   if (p->saliency_current == 0 || drive_source_selected_has(SOURCE_MEASURES)) c->salient_q20 = INT32_MAX;

@@ -15,6 +15,9 @@ typedef uint32_t angle_bam32_t;
 #define ANGLE_BAM_QUARTER_TURN ((angle_bam32_t)0x40000000uL)
 #define ANGLE_BAM_HALF_TURN ((angle_bam32_t)0x80000000uL)
 
+// Binary angle of a radian, 2^32 / 2 pi.
+#define ANGLE_BAM_PER_RAD 683565276L
+
 // A whole number of degrees as a binary angle, within 1 LSB, for |degrees| < 6e7; 2^32 / 360 = 11930464 + 32 / 45.
 // A constant expression where its argument is one.
 #define ANGLE_BAM_DEGREES(degrees) \

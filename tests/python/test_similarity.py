@@ -11,7 +11,7 @@ import pytest
 from test_scales import PLANT, larger
 
 from stillspin import core, resources
-from stillspin.cases import nameplate, profile, similarity, sized_effects
+from stillspin.cases import nameplate, observer_noise, profile, similarity, sized_effects
 from stillspin.scales import SCALES
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -341,11 +341,19 @@ def test_the_current_loop_is_faster_where_a_segment_of_the_polarity_test_is_the_
 )
 def test_a_sharp_angle_on_a_heavy_rotor_is_told_as_a_noisier_one(changes, factor):
     plant = stated(**changes)
-    assert similarity.noise(plant) == factor
+    assert observer_noise.times(plant) == factor
     assert nameplate.following(plant, {})["observer_noise"] == 100.0 * factor
     assert "observer_noise" not in nameplate.following(plant, {"observer_noise": 70.0})
     del plant["mechanics"]
-    assert similarity.noise(plant) == 1.0
+    assert observer_noise.times(plant) == 1.0
+
+
+@pytest.mark.parametrize(("ripple", "factor"), [(1.9, 1.0), (4.1, 2.0), (7.9, 2.0), (8.1, 4.0), (40.0, 4.0)])
+def test_without_saliency_the_noise_goes_by_what_an_inductance_that_is_off_makes_of_a_pulse(ripple, factor):
+    """A pulse of 42 us and two thirds of the link; a twentieth of it over 5 mA for each of 20 A."""
+    inductance = 2.0 / 3.0 * 300.0 * 42e-6 / ripple
+    plant = stated(inductance_d=inductance, inductance_q=inductance)
+    assert observer_noise.times(plant) == factor
 
 
 def test_the_watch_over_synchronism_bears_what_the_sensors_noise_looks_like(native):

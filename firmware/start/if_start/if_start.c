@@ -21,7 +21,6 @@
 #include "hal/qmath/qtrig.h"
 
 #define PER_FOUR_PERIODS_Q58 720575940L  // 2^58 / 4 N^2, N = 10 000 ticks
-#define BAM_PER_RAD 683565276L           // the sine for its angle: at a half, the most, 29 degrees for 30
 
 if_start_t if_ramp;
 
@@ -154,7 +153,8 @@ static void take_rotor(drive_t* d) {
   const int32_t limit_q20 = d->config.values.current_limit;
   const int32_t q_q20 = q_limit(qc_over(load_q20, d->control.per_torque_constant, 24), limit_q20);
   const int32_t length_q20 = q_clamp(2 * qc_abs_sat(q_q20), if_ramp_config.current_q20, limit_q20);
-  const uint32_t ahead_bam = (uint32_t)qc_mul_sat(q_div(q_q20, length_q20, 24), BAM_PER_RAD, 24);
+  // The sine for its angle: at a half, the most, 29 degrees for 30.
+  const uint32_t ahead_bam = (uint32_t)qc_mul_sat(q_div(q_q20, length_q20, 24), ANGLE_BAM_PER_RAD, 24);
   turn_controllers(&d->control.current, ahead_bam);
   if_start_begin_turning(&if_ramp, &if_ramp_config, now->angle_bam + ahead_bam, length_q20, now->speed_bpp);
   if_start_turn_to(&if_ramp, &if_ramp_config, d->control.target_bpp);

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from stillspin import core
 from stillspin import scales as boards
-from stillspin.cases import open_loop, similarity
+from stillspin.cases import observer_noise, open_loop, similarity
 from stillspin.entry import Entry
 
 
@@ -40,7 +40,7 @@ FOLLOWING = (
     Following("rated_current", "machine", "rated_peak_current", digits=2),
     Following("current_full_scale", "adc", "current_range", needed=False),
     Following("trip_current", "adc", "current_range", 0.9, needed=False),
-    Following("observer_noise", "adc", "current_range", 1e3 * similarity.NOISE_PER_AMPERE, needed=False),  # mA
+    Following("observer_noise", "adc", "current_range", 1e3 * observer_noise.PER_AMPERE, needed=False),  # mA
     Following("link_full_scale", "adc", "voltage_range", needed=False),
     Following("link_minimum", "link", "source_voltage", 0.5),
     Following("link_regulation", "link", "source_voltage", 1.35, needed=False),
@@ -87,7 +87,7 @@ def following(plant: core.Plant, stated: Mapping[str, float]) -> dict[str, float
             found[row.parameter] = round(float(value) * row.factor, row.digits)
     found |= open_loop.one_inductance(found)
     if "observer_noise" in found:
-        found["observer_noise"] *= similarity.noise(plant)
+        found["observer_noise"] *= observer_noise.times(plant)
     limit = stated.get("current_limit")
     if limit is not None and "map_current" not in stated:
         found["map_current"] = limit

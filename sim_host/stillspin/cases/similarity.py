@@ -28,10 +28,6 @@ _SPIN_LEAST = 0.43  # of the speed up to which the pulses alternate
 _SWING = 2.1  # the current loop over the frequency at which EMF, inductance and inertia swing
 _SWING_TESTED = 2.8  # where a segment of the polarity test is the shortest
 _LOOP_END = 10400.0  # rad/s times three half periods and the divider's (firmware/config/rules.c)
-NOISE_PER_AMPERE = 5e-3  # A rms of a current difference, of the sensors' range: quantisation and noise of 12 bits
-_NOISE_MOST = 4.0
-_OFF = 0.05  # of an inductance, before it is learnt
-_PULSE = 42e-6  # s, the drive's default
 _LEVELS_ABOVE = 2.2  # times the ripple, and a tenth to spare
 _TRIP_SHARE = 1.5  # of which the ripple has the rest
 _PULSE_LEAST = 24.0  # us, with the usual settle time
@@ -173,30 +169,6 @@ def assumed(plant: core.Plant) -> core.Plant:
         share = _FRICTION * size.torque / size.base_speed
         found["mechanics"] = {"viscous_friction": float(f"{share:.{_DIGITS}g}")}
     return found
-
-
-def noise(plant: core.Plant) -> float:
-    """How many times the sensors' noise the drive is told; 1 where an entry is missing.
-
-    The saliency's axis turns with the current, and until commissioning has measured that an observer takes the turn for
-    one of the shaft. The faster it believes an angle that is seen sharply, and the less the current that answers
-    accelerates the shaft, the more of a turn follows from a turn. Where the EMF alone shows the shaft, it goes by
-    what an inductance that is off by a twentieth makes of a pulse.
-    """
-    size = of(plant)
-    if size is None:
-        return 1.0
-    if open_loop.share(size.inductance_d, size.inductance_q) < open_loop.SALIENCY_LEAST:
-        return _times(_OFF * 2.0 / 3.0 * size.ripple * _PULSE / (NOISE_PER_AMPERE * size.current_range))
-
-    def believed(size: Size) -> float:
-        return size.sharpness / (size.pole_pairs * size.acceleration)
-
-    return _times(believed(size) / believed(REFERENCE))
-
-
-def _times(ratio: float) -> float:
-    return float(2.0 ** math.floor(math.log2(min(max(ratio, 1.0), _NOISE_MOST))))
 
 
 def power_of_two(ratio: float) -> float:
