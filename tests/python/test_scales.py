@@ -110,16 +110,29 @@ def test_the_scales_follow_from_the_ranges_of_the_board(amperes, volts, expected
         (6.7e-5, {}),
         (3.3e-5, {"current_scale": -1.0}),
         (1.6e-5, {"voltage_scale": -1.0, "current_scale": -1.0}),
-        (1e-6, {"voltage_scale": -1.0, "current_scale": -2.0}),
+        (4.3e-6, {"voltage_scale": -1.0, "current_scale": -2.0}),
+        (4.2e-6, {"voltage_scale": 1.0}),
     ],
 )
-def test_a_light_rotor_has_lower_scales(inertia, expected):
+def test_a_light_rotor_has_lower_scales_if_they_hold_it(inertia, expected):
     plant = {
         "adc": {"current_range": 20.0, "voltage_range": 465.0},
         "machine": {"pole_pairs": 2.0},
         "mechanics": {"inertia": inertia},
     }
     assert nameplate.scales(plant) == expected
+
+
+def test_the_voltage_of_a_link_bounds_the_scale_of_a_light_rotor():
+    plant = {
+        "adc": {"current_range": 20.0, "voltage_range": 450.0},
+        "machine": {"pole_pairs": 2.0},
+        "mechanics": {"inertia": 4.3e-6},
+        "link": {"source_voltage": 250.0},
+    }
+    assert nameplate.scales(plant) == {"voltage_scale": -2.0, "current_scale": -1.0}
+    plant["link"]["source_voltage"] = 251.0
+    assert nameplate.scales(plant) == {"voltage_scale": -1.0, "current_scale": -2.0}
 
 
 def test_a_bus_is_described_in_the_steps_of_its_node():

@@ -57,6 +57,8 @@ _LIGHTER = 1.3
 """So much lighter than its nameplate a rotor may turn out."""
 _STEPS = 2
 """That a scale may be below its board's range, whose values then go up to a quarter of their formats."""
+_LINK = 1000.0
+"""V at the voltage's scale 0: a link's voltage that its format, which goes up to 1500 V, holds with what brakes it."""
 STATED = ("current_limit", "speed_limit")
 """Parameters that follow from nothing: the motor's file has them."""
 
@@ -64,7 +66,8 @@ STATED = ("current_limit", "speed_limit")
 def scales(plant: core.Plant) -> dict[str, float]:
     """The powers of two, nearest to none, that bring the sensors' ranges to where the formats expect them.
 
-    A torque has both in its unit: a rotor that is too light for the formats has lower ones, the voltage's first.
+    A torque has both in its unit: a rotor that is too light for the formats has lower ones, the voltage's first. One
+    that the lowest do not hold keeps those of its board: it is its inertia then that is out of range.
     """
     found = {}
     for name, key, least, most in _SCALES:
@@ -72,10 +75,19 @@ def scales(plant: core.Plant) -> dict[str, float]:
         found[name] = max(0, math.ceil(math.log2(value / most))) + min(0, math.floor(math.log2(value / least)))
     inertia = float(plant.get("mechanics", {}).get("inertia", 0.0))
     pairs = float(plant.get("machine", {}).get("pole_pairs", 1.0))
-    for name in (boards.VOLTAGE, boards.CURRENT) * _STEPS if inertia > 0.0 else ():
-        if inertia / pairs < _LIGHTER * _LIGHTEST * 2.0 ** sum(found.values()):
-            found[name] -= 1
-    return {name: float(scale) for name, scale in found.items() if scale}
+    link = float(plant.get("link", {}).get("source_voltage", 0.0))
+    lower = dict(found)
+    for name in (boards.VOLTAGE, boards.CURRENT) * _STEPS:
+        held = name == boards.CURRENT or link <= _LINK * 2.0 ** (lower[name] - 1)
+        if held and 0.0 < inertia / pairs < _least(lower):
+            lower[name] -= 1
+    kept = lower if inertia / pairs >= _least(lower) else found
+    return {name: float(scale) for name, scale in kept.items() if scale}
+
+
+def _least(scales: Mapping[str, int]) -> float:
+    """The lightest rotor that these scales hold, in kg m² for each pole pair."""
+    return _LIGHTER * _LIGHTEST * 2.0 ** sum(scales.values())
 
 
 def following(plant: core.Plant, stated: Mapping[str, float]) -> dict[str, float]:
