@@ -3,18 +3,17 @@
 PLACE(260)
 // Functions of the board (board/functions.h)
 PARAMETER(400, bootstrap_time, MS, 16, 1, 0, 200, BOARD_BOOTSTRAP_TIME, STOPPED,
-          "lower devices on before the first pulse; 0 where there are no bootstrap capacitors")
+          "lower devices on before the first pulse; 0: no bootstrap capacitors")
 PARAMETER(401, precharge_voltage, V, 16, 1, 0, 15000, 0, STOPPED,
-          "DC-link voltage at which the precharge relay closes; 0 where there is none")
+          "DC-link voltage at which the precharge relay closes; 0: none")
 PARAMETER(402, precharge_time, MS, 0, 0, 10, 60000, 2000, ALWAYS, "time for the DC link to reach precharge_voltage")
 PARAMETER(403, brake_voltage, V, 16, 1, 0, 15000, 0, STOPPED,
-          "DC-link voltage that switches the brake resistor on; 0 where there is none")
+          "DC-link voltage that switches the brake resistor on; 0: none")
 PARAMETER(404, brake_hysteresis, V, 16, 1, 10, 1000, 100, ALWAYS,
           "the brake resistor is switched off so far below brake_voltage")
 PARAMETER(405, brake_share, PERCENT, 16, 0, 1, 100, 20, ALWAYS,
           "share of the time that the brake resistor may be on, over 8 s")
-PARAMETER(410, temperature_limit, CELSIUS, 8, 0, 0, 130, 0, ALWAYS,
-          "heat-sink temperature of the fault; 0 where there is no sensor")
+PARAMETER(410, temperature_limit, CELSIUS, 8, 0, 0, 130, 0, ALWAYS, "heat-sink temperature of the fault; 0: no sensor")
 PARAMETER(411, temperature_derating, CELSIUS, 8, 0, 0, 130, 70, ALWAYS,
           "heat-sink temperature from which the current limit falls, to half at temperature_limit")
 PARAMETER(412, overload_current, A, 20, 2, -100, 10000, -100, ALWAYS,

@@ -10,12 +10,13 @@
 #include "hal/hal_adc.h"
 #include "hal/qmath/qcall.h"
 
-#define K0_MAX_Q20 1048576000L       // lambda/L of 1000 A
-#define CRAWL_MAX_RPM_Q16 655360L    // where cogging is learnt
-#define HOLD_BELOW_RPM_Q16 1310720L  // 20 rpm
-#define RELUCTANCE_END_Q16 1671168L  // 25.5 N m/A with the full scale, half of the largest current
-#define EDGE_BAND_Q20 524288L        // half an ampere of ripple may be predicted wrong
-#define RAD_PER_RPM_Q47 1473799531L  // 2 pi / 60 * 100 us
+#define K0_MAX_Q20 1048576000L           // lambda/L of 1000 A
+#define CRAWL_MAX_RPM_Q16 655360L        // where cogging is learnt
+#define PER_RELEASE_ANGLE_Q60 32941987L  // binary angle, Q8, to radian, over 0.2 rad
+#define RELEASE_STEP_END_Q30 24159191L   // wc T with 225 rad/s
+#define RELUCTANCE_END_Q16 1671168L      // 25.5 N m/A with the full scale, half of the largest current
+#define EDGE_BAND_Q20 524288L            // half an ampere of ripple may be predicted wrong
+#define RAD_PER_RPM_Q47 1473799531L      // 2 pi / 60 * 100 us
 #define ONE_Q24 16777216L
 #define MILLIHENRY_Q30 1099511628L  // mH (Q20) to H (Q30): 1.024
 
@@ -141,6 +142,16 @@ static int16_t freed_by_q8(const machine_map_t* map, int32_t sixth_q30) {
   return (int16_t)(q_clamp(q_div(root_q24, sixth_q30, 14), 384, 24575) / 3 * 4);
 }
 
+// How stiffly a shaft is held while a brake opens: wc^2 is what the largest current makes of it per 0.2 rad, so that a
+// share of the largest load turns every shaft as far, in electrical degrees. A heavier one that is held more stiffly
+// asks for amperes by what the observer errs. 225 rad/s at most, which the current's own delay leaves.
+static void load_release(drive_config_t* c) {
+  const int32_t most_q16 = qc_mul_sat(c->nameplate.torque_q24, parameters.current_limit, 28);
+  const int32_t accel_q8 = qc_mul_sat(c->nameplate.accel_q12, most_q16, 20);
+  const uint64_t square_q60 = (uint64_t)q_product(accel_q8, PER_RELEASE_ANGLE_Q60);
+  c->release_step_q30 = q_min((int32_t)q_sqrt64(square_q60), RELEASE_STEP_END_Q30);
+}
+
 static bool load_control(drive_config_t* c) {
   const parameters_t* const p = &parameters;
   c->speed.friction_q24 = p->friction;
@@ -160,7 +171,7 @@ static bool load_control(drive_config_t* c) {
   c->salient_q20 = p->saliency_current;
   if (p->saliency_current == 0 || drive_source_selected_has(SOURCE_MEASURES)) c->salient_q20 = INT32_MAX;
   c->hold_gain_q30 = q_div(p->position_hold, c->nameplate.periods_per_second, 22);
-  c->hold_below_bpp = qc_mul_sat(HOLD_BELOW_RPM_Q16, c->bpp_per_rpm_q8, 24);
+  load_release(c);
   const current_design_t current = {p->current_bandwidth, DRIVE_PERIOD_US, p->current_divider,
                                     (current_corner_t)p->current_corner};
   mtpa_design(&c->mtpa, &c->nameplate);

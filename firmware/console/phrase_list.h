@@ -2,10 +2,9 @@
 
 PHRASE(ctrl_c_ends_a_long_answer_stop, "Ctrl-C ends a long answer; stop and coast always work. More: help <command>")
 PHRASE(this_command_takes_nothing_after_it, "this command takes nothing after it: nothing done")
-PHRASE(the_line_is_too_old_to_move,
-       "nothing done: the line was typed over 5 s ago, or a break cut it. Arrow up recalls it")
+PHRASE(the_line_is_too_old_to_move, "nothing done: typed over 5 s ago, or cut by a break. Arrow up recalls it")
 PHRASE(nothing_done_nobody_would_watch_add,
-       "nothing done: nobody would watch. Add 'hold' (runs while a key is held) or 'free' (runs until 'stop')")
+       "nothing done: nobody would watch. Add 'hold' (while a key is held) or 'free' (until 'stop')")
 PHRASE(others_hold_the_motor, "the CAN bus or the board's switch holds the motor: nothing changed")
 PHRASE(hold_runs_while_a_key_is_held, "hold: runs while a key is held; keep the space bar down")
 PHRASE(free_nobody_watches_runs_until_stop, "free: nobody watches; it runs until 'stop', even without this terminal")

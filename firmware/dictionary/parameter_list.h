@@ -27,8 +27,7 @@ PARAMETER(6, inertia, KGM2, 24, 6, 10, 500000, 4550, STOPPED, "inertia of rotor 
 PARAMETER(7, friction, NMS, 24, 5, 0, 50000, 300, STOPPED, "viscous friction")
 PARAMETER(8, current_limit, A, 20, 2, 50, 10000, 1400, STOPPED, "largest phase current, peak")
 PARAMETER(9, speed_limit, RPM, 8, 0, 10, 20000, 3300, STOPPED, "largest speed reference")
-PARAMETER(520, rated_current, A, 20, 2, 0, 10000, 0, ALWAYS,
-          "rated phase current of the motor, peak; 0: not set, half of current_limit is used")
+PARAMETER(520, rated_current, A, 20, 2, 0, 10000, 0, ALWAYS, "rated phase current, peak; 0: half of current_limit")
 
 PLACE(20)
 // Inverter

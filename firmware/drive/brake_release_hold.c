@@ -2,16 +2,12 @@
 //
 // A speed controller that is quiet at standstill lets a load that falls on the shaft turn it by several degrees before
 // it knows the load. For hold_time after the start of a standing shaft the torque therefore comes from a stiff loop,
-//   acceleration = wc^2 (theta* - theta^) + 2 wc (w* - w^ - w') + load^
-// with theta* running at the speed reference. Angle, speed and load are the deviation observer's, told that the load
-// changes fast and that its windows are worth all they measure (config/config.c, hold_observer). A load step of its own
-// it need not look for.
+//   acceleration = wc^2 (theta* - theta^) + 2 wc (w* - w^) + load^
+// with theta* running at the speed reference and wc by the machine (config/config.c). Angle, speed and load are the
+// deviation observer's, told that the load changes fast and that its windows are worth all they measure
+// (config/config.c, hold_observer). A load step of its own it need not look for.
 //
-// The current reference moves slowly enough for the voltage to leave the windows long, at most s in a period. A current
-// x above what the load wants is gone x/s periods later only, and has made the shaft faster by a(x) (x/s) T/2
-// meanwhile, a(x) its acceleration. w' is seven tenths of that, which is what a magnet 30 % weaker than nominal makes
-// of it. Without w' the loop comes too late on its way back, and swings up to 4 degrees where the inertia is 30 % less
-// than nominal or the flux 30 % more. In current 2 wc w' is 0.7 wc T x |x| / s, whatever the motor.
+// The current reference moves slowly enough for the voltage to leave the windows long.
 //
 // The loop needs a map of the cross-saturation: its angle error of 0.46 degrees per ampere, unknown, closes this loop
 // on itself, with a gain of 0.8 on motor A and of 1 from wc = 250 rad/s on. The resistance is the one seen at the
@@ -26,11 +22,7 @@
 #include "firmware/mode/mode.h"
 #include "hal/qmath/qcall.h"
 
-#define CONTROL_STEP_Q30 24159191L  // wc T, with 225 rad/s
-#define CONTROL_SQUARE_Q30 543582L  // its square
-#define FILTER_Q30 751619277L       // 0.7 of the change of the current reference per period
-#define SLEW_Q20 734003L            // s, 0.7 A: some 50 V, within the alternating layout
-#define RETURN_Q30 24159191L        // 0.7 wc T / s, per ampere
+#define SLEW_Q20 734003L  // 0.7 A in a period: some 50 V, within the alternating layout
 
 hold_t brake_release_hold;
 
@@ -45,12 +37,13 @@ void hold_begin(drive_t* d) {
 
 void hold_end(void) { brake_release_hold.left = 0; }
 
-// Electrical acceleration, binary angle per period^2, Q8, without the load's and w'.
+// Electrical acceleration, binary angle per period^2, Q8, without the load's.
 static int32_t restoring_accel_q8(const drive_t* d) {
   const estimator_output_t* const now = &d->estimate.selected;
   const int32_t behind = angle_diff_bam(brake_release_hold.reference_bam, now->angle_bam);
   const int32_t slow = qc_sub_sat(d->control.ramp.value, now->speed_bpp);
-  return q_sat64(q_shr64(q_mac(q_product(behind, CONTROL_SQUARE_Q30), slow, 2 * CONTROL_STEP_Q30), 22));
+  const int32_t step_q30 = d->config.release_step_q30;
+  return qc_mul_sat(qc_add_sat(qc_mul(behind, step_q30, 31), slow), step_q30, 21);
 }
 
 int32_t hold_step_q20(const drive_t* d) {
@@ -58,12 +51,9 @@ int32_t hold_step_q20(const drive_t* d) {
   h->left--;
   h->reference_bam += (uint32_t)d->control.ramp.value;
   const drive_control_t* const c = &d->control;
-  const int64_t load_q40 = q_product(d->estimate.selected.load_accel_q8, h->current_per_accel);
-  const int32_t above_q20 = q_sat64(c->references.current_q20.q - q_shr64(load_q40, 20));
-  const int32_t return_q20 = qc_mul_sat(qc_mul_sat(above_q20, qc_abs_sat(above_q20), 20), RETURN_Q30, 30);
-  const int64_t command_q40 = q_mac(load_q40, restoring_accel_q8(d), h->current_per_accel);
-  const int32_t current_q20 = q_sat64(q_shr64(command_q40, 20) - return_q20);
+  const int32_t load_q20 = qc_mul_sat(d->estimate.selected.load_accel_q8, h->current_per_accel, 20);
+  const int32_t restoring_q20 = qc_mul_sat(restoring_accel_q8(d), h->current_per_accel, 20);
+  const int32_t current_q20 = qc_add_sat(load_q20, restoring_q20);
   const int32_t limited_q20 = q_clamp(current_q20, -c->headroom_q20, c->headroom_q20);
-  const int32_t command_q20 = q_mix(c->references.current_q20.q, limited_q20, FILTER_Q30, 30);
-  return q_clamp(command_q20, c->references.current_q20.q - SLEW_Q20, c->references.current_q20.q + SLEW_Q20);
+  return q_clamp(limited_q20, c->references.current_q20.q - SLEW_Q20, c->references.current_q20.q + SLEW_Q20);
 }

@@ -118,10 +118,10 @@ static bool ramp_waits(const drive_t* d, int32_t target_bpp) {
   return (d->estimate.selected.speed_bpp > 0) ? target_bpp < value : target_bpp > value;
 }
 
-// At a reference of zero the position is kept, not only the speed.
+// At a reference of zero the position is kept, not only the speed: from twice a crawl down it counts as at rest.
 static int32_t hold_position(const drive_t* d, drive_control_t* c) {
   const bool at_zero = d->state == DRIVE_RUN && c->target_bpp == 0 && c->ramp.value == 0;
-  const bool slow = q_abs_sat(d->estimate.selected.speed_bpp) < d->config.hold_below_bpp;
+  const bool slow = q_abs_sat(d->estimate.selected.speed_bpp) / 2 < d->config.observer.cogging.crawl_bpp;
   if (!at_zero || !(slow || c->position_hold.holding)) {
     position_hold_release(&c->position_hold);
     return 0;

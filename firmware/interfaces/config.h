@@ -42,7 +42,7 @@ typedef struct drive_config {
   int32_t salient_q20;           // most current while the rotor is found by its saliency
   int32_t salient_bpp_q4;        // up to that speed, for a volt of the link
   int32_t hold_gain_q30;         // of the position hold, per period
-  int32_t hold_below_bpp;        // slower than this counts as at rest
+  int32_t release_step_q30;      // wc T of a shaft that is held while a brake opens (drive/brake_release_hold.c)
   int32_t sensor_mismatch_q30;   // of the current sensors, as a share
   bool mapped;                   // the turn of the saliency axis with the current is known
   int16_t freed_by_q8;           // of salient_bpp_q4: from that speed on all of the current, 2 or more

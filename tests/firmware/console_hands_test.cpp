@@ -44,7 +44,7 @@ class ConsoleHands : public Console {
   }
   const Octets kSession = little(0x80000001u, 4);
   static constexpr const char* kTooOld =
-      "nothing done: the line was typed over 5 s ago, or a break cut it. Arrow up recalls it\r\n> ";
+      "nothing done: typed over 5 s ago, or cut by a break. Arrow up recalls it\r\n> ";
 };
 
 TEST_F(ConsoleHands, ALineThatWasLeftDoesNotStartTheMotor) {
@@ -143,9 +143,9 @@ TEST_F(ConsoleHands, TheRestOfALineMovesNothing) {
   send("help ");
   run(100);
   serial_break();
-  EXPECT_TRUE(has(command("start free", 300), "a break cut it"));
+  EXPECT_TRUE(has(command("start free", 300), "cut by a break"));
   EXPECT_FALSE(inside::start_requested());
-  EXPECT_FALSE(has(command("start free", 300), "a break cut it"));
+  EXPECT_FALSE(has(command("start free", 300), "cut by a break"));
   EXPECT_TRUE(inside::start_requested());
 }
 
@@ -189,7 +189,7 @@ TEST_F(ConsoleHands, ABreakForgetsWhatWasTypedAhead) {
 TEST_F(ConsoleHands, AStartNeedsAGuardOrTheWordThatItNeedsNone) {
   NEEDS("commissioning");
   const std::string ways =
-      "nothing done: nobody would watch. Add 'hold' (runs while a key is held) or 'free' (runs until 'stop')\r\n";
+      "nothing done: nobody would watch. Add 'hold' (while a key is held) or 'free' (until 'stop')\r\n";
   for (const char* line : {"start", "commission start", "start now", "start hold free", "commission start hold 1"}) {
     EXPECT_EQ(command(line), ways) << line;
   }

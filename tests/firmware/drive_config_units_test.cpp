@@ -102,11 +102,21 @@ TEST_F(Units, SpeedControl) {
   EXPECT_EQ(c.speed.pi_damping_q12, parameters.speed_pi_damping);
   expect_near_share(c.ramp_step_bpp, 1.7 * kBppPerRpm, 1e-4);
   expect_near_share(real(c.hold_gain_q30, 30), 7.5 * kPeriod, 1e-5);
-  expect_near_share(c.hold_below_bpp, 20.0 * kBppPerRpm, 1e-4);
   expect_near_share(real(c.friction_per_bpp_q40, 40), 0.0123 * kTurn / 60.0 / kBppPerRpm, 1e-3);
   mtpa_t mtpa;
   mtpa_design(&mtpa, &c.nameplate);
   EXPECT_EQ(c.mtpa.pole_q20, mtpa.pole_q20);
+}
+
+// wc^2 of the hold while a brake opens: the acceleration by the largest current, over 0.2 rad; 225 rad/s at most.
+TEST_F(Units, AHeavyShaftIsHeldLessStiffly) {
+  parameters.current_limit = raw(14.0, 20);
+  for (const double inertia : {0.001, 0.0045, 0.02, 0.1}) {
+    parameters.inertia = raw(inertia, 24);
+    const drive_config_t& c = made();
+    const double accel = real(c.nameplate.torque_q24, 24) * 14.0 * parameters.pole_pairs / inertia;
+    expect_near_share(real(c.release_step_q30, 30), kPeriod * std::min(225.0, std::sqrt(accel / 0.2)), 1e-3);
+  }
 }
 
 TEST_F(Units, CurrentControl) {

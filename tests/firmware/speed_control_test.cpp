@@ -116,9 +116,8 @@ TEST_F(SpeedTask, AHeldShaftsSpeedLawWaitsWhereItGoesOn) {
   EXPECT_GT(iq(), 2.2);
 }
 
-// acceleration = wc^2 (theta* - theta) + 2 wc (w* - w) + load, wc = 225 rad/s, of which seven tenths a period and 0.7
-// A at most; theta* runs on at the reference's speed. A current above the load's counts as the speed that it makes
-// until it is gone.
+// acceleration = wc^2 (theta* - theta) + 2 wc (w* - w) + load, wc = 225 rad/s, by 0.7 A in a period at most; theta*
+// runs on at the reference's speed.
 TEST_F(SpeedTask, AHeldShaftIsHeldStiffly) {
   struct Case {
     double off, slow, load_nm, iq;
@@ -150,11 +149,9 @@ TEST_F(SpeedTask, AHeldShaftIsHeldStiffly) {
     ASSERT_TRUE(hold_is_on(&drive));
     const double held = real(hold_step_q20(&drive), 20);
     const double per_ampere = per_nm * torque_constant();
-    const double above = c.iq - c.load_nm / torque_constant();
-    const double gained = 0.7 * above * per_ampere * std::abs(above) / 0.7 * kPeriod / 2.0;
-    const double accel = 225.0 * 225.0 * c.off + 450.0 * (c.slow - gained) + c.load_nm * per_nm;
+    const double accel = 225.0 * 225.0 * c.off + 450.0 * c.slow + c.load_nm * per_nm;
     const double wanted = accel / per_ampere;
-    EXPECT_NEAR(held, c.iq + std::clamp(0.7 * (wanted - c.iq), -0.7, 0.7), 2e-3) << c.off << c.slow << c.load_nm;
+    EXPECT_NEAR(held, c.iq + std::clamp(wanted - c.iq, -0.7, 0.7), 2e-3) << c.off << c.slow << c.load_nm;
     EXPECT_EQ(brake_release_hold.left, 9u);
   }
 }
@@ -251,7 +248,7 @@ TEST_F(SpeedTask, AtZeroThePlaceIsKept) {
     part(TASK_SPEED);
     return inside::position_hold().holding;
   };
-  const std::int32_t rest = inside::config().hold_below_bpp;
+  const std::int32_t rest = 2 * inside::config().observer.cogging.crawl_bpp;
   ASSERT_GT(rest, 10);
   EXPECT_TRUE(holds(DRIVE_RUN, 0, 0, 0, false));
   EXPECT_TRUE(holds(DRIVE_RUN, 0, 0, rest - 1, false));
