@@ -38,7 +38,8 @@ deviation_model_t deviation_model(const machine_model_t* m, int32_t w_q30) {
                                 damping_q29(m, m->ydq_q30, w_q30, m->k_qd_q24),
                                 damping_q29(m, m->yq_q30, w_q30, -m->k_dd_q24),
                                 {q_shr(q_mul_hi(w_q30, m->k0_q20.d), 3), q_shr(q_mul_hi(w_q30, m->k0_q20.q), 3)},
-                                {m->slope.yqq_q30, m->slope.ydq_q30},
+                                {q_within_bits(m->slope.yqq_q30, MORE_BITS + 1u),  // a mean has half of it
+                                 q_within_bits(m->slope.ydq_q30, MORE_BITS)},
                                 m->map.per_segment_q26};
   return at;
 }
@@ -54,8 +55,8 @@ static void change_of(const deviation_model_t* at, const estimator_window_t* w, 
   // Of a segment, to 1/4096 of it, and at most one: a larger ripple has left the segment that the slope is of.
   const int32_t off_q12 = q_within_bits(q_mul_hi(i.q - iq_q18, at->per_segment_q26), SEGMENT_BITS);
   const int32_t off_q30 = off_q12 * 262144L;
-  const int32_t half_more_q30 = q_within_bits(q_mul_hi(at->slope.yqq_q30, off_q30) * 2, MORE_BITS);  // of yqq
-  const int32_t cross_more_q30 = q_within_bits(q_mul_hi(at->slope.ydq_q30, off_q30) * 4, MORE_BITS);
+  const int32_t half_more_q30 = q_mul_hi(at->slope.yqq_q30, off_q30) * 2;  // of yqq
+  const int32_t cross_more_q30 = q_mul_hi(at->slope.ydq_q30, off_q30) * 4;
   const int32_t mean_q30 = at->mean_q30 + half_more_q30;
   const dq_t mirrored = deviation_mirrored_q15(at->half_q30 - half_more_q30, at->cross_q30 + cross_more_q30, v);
   const dq_t slope_q15 = {

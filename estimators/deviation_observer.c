@@ -12,6 +12,7 @@
 #define SPEED_VARIANCE (64L * ONE_Q20)
 #define LOAD_VARIANCE (64L * ONE_Q20)
 #define STANDING_VARIANCE (ONE_Q20 / 4)  // 1.2 rad/s
+#define NOISE_SHARE 3                    // the noise is that of a window of a third of the period
 #define OUTLIER 192L                     // sigma in a window as long as the period: 48 in a quarter of it
 #define SCORE_BIAS_MIN 40                // a bias of 0.4 units of angle, a third of a degree; Q24 to Q20
 #define LAG_MAX_Q20 16777216L            // 16 units of time: 102 ms
@@ -33,7 +34,7 @@ static int32_t load_variance_q20(const machine_model_t* m, int32_t load_rate_q20
 void deviation_observer_design(deviation_observer_config_t* c, const machine_model_t* m,
                                const deviation_observer_tuning_t* t) {
   const int32_t noise_q20 = q_max(t->noise_q20, 1049);
-  c->weight_q8 = q_square_sat(q_div(ONE_Q20, noise_q20, 20), 32);
+  c->weight_q8 = q_square_sat(q_div(ONE_Q20, noise_q20, 20), 32) / NOISE_SHARE;
   c->limit_q19 = noise_q20 * (OUTLIER / 2);
   c->load_noise_q20 = load_variance_q20(m, t->load_rate_q20);
   c->load_noise_quiet_q20 = q_min(load_variance_q20(m, t->load_rate_quiet_q20), c->load_noise_q20);
@@ -101,9 +102,9 @@ static void correct(deviation_observer_t* s, const information_t* n) {
 // Eight periods of as much information as a period may have: 64 of them stay in 31 bits. Across it is as bounded, but
 // no interval shows that, and it has 64.
 static void gather(deviation_gathered_t* g, const information_t* n) {
-  g->aa_q21 += q_shr_round(n->aa, 3);
+  g->aa_q21 += q_shr(n->aa, 3);
   g->as_q24 += n->as;
-  g->ss_q21 += q_shr_round(n->ss, 3);
+  g->ss_q21 += q_shr(n->ss, 3);
 }
 
 // Beyond a half the gain as it is would correct too much. Nor is an angle waited with that is not known: with zero
@@ -126,6 +127,7 @@ static void note_load(deviation_observer_t* s, const deviation_observer_config_t
 }
 
 static const deviation_residual_t no_residual = {0, 0, 0, 0};
+static const information_t no_information = {0, 0, 0, 0, 0};
 
 bool deviation_take_mean_residual(deviation_residual_t* left, dq_t* residual_q20, int32_t* span_ticks,
                                   int32_t* periods) {
@@ -133,8 +135,8 @@ bool deviation_take_mean_residual(deviation_residual_t* left, dq_t* residual_q20
   *left = no_residual;
   if (sum.span_ticks <= 0) return false;
   const int32_t per_span_q17 = DEVIATION_PERIOD_Q17 / sum.span_ticks;
-  residual_q20->d = q_sat64(q_shr64(q_product(sum.d_q11, per_span_q17), 8));
-  residual_q20->q = q_sat64(q_shr64(q_product(sum.q_q11, per_span_q17), 8));
+  residual_q20->d = q_sat64(q_shr64(q_product(sum.d_q17, per_span_q17), 14));
+  residual_q20->q = q_sat64(q_shr64(q_product(sum.q_q17, per_span_q17), 14));
   *span_ticks = sum.span_ticks / q_max(sum.periods, 1);
   *periods = sum.periods;
   return true;
@@ -142,8 +144,8 @@ bool deviation_take_mean_residual(deviation_residual_t* left, dq_t* residual_q20
 
 static void leave(deviation_residual_t* left, const information_sums_t* n) {
   if (left->periods >= LEFT_PERIODS_MAX) *left = no_residual;
-  left->d_q11 += q_shr(n->left_q15.d + 8, 4);
-  left->q_q11 += q_shr(n->left_q15.q + 8, 4);
+  left->d_q17 += n->e_q17.d;
+  left->q_q17 += n->e_q17.q;
   left->span_ticks += n->span_ticks;
   left->periods++;
 }
@@ -155,7 +157,7 @@ static void refresh(deviation_observer_t* s, const machine_model_t* m, dq_t curr
 }
 
 static information_t look(deviation_observer_t* s, const deviation_observer_config_t* c, const estimator_input_t* in) {
-  information_sums_t sums = {0, 0, {0, 0}, {0, 0}, 0, {0, 0}, 0};
+  information_sums_t sums = {0, 0, {0, 0}, {0, 0}, 0};
   deviation_change_t seen[ESTIMATOR_WINDOWS];
   const dq_t current_q18 = deviation_see(in, s->angle_bam, s->speed_bpp, seen);
   // What the first period says counts only where the sensitivities were asked for beside it.
@@ -163,23 +165,21 @@ static information_t look(deviation_observer_t* s, const deviation_observer_conf
   if (in->refresh || !s->is_sensitive) refresh(s, in->model, current_q18);
   for (uint16_t k = 0; k < in->window_count; k++) {
     const estimator_window_t* const w = &in->windows[k];
-    information_pass(&sums, w, &seen[k]);
-    if (counts && (!c->zero_vectors_only || w->zero_vector)) {
-      information_collect(&sums, c->limit_q19, &s->sensitivity, estimator_share_q30(w), &seen[k]);
-    }
+    if (!c->zero_vectors_only || w->zero_vector) information_collect(&sums, c->limit_q19, &s->sensitivity, w, &seen[k]);
   }
   leave(&s->residual, &sums);
   if (in->regress) {
     regression_evaluate(&s->regression, seen, in);
     s->regressed_bam = s->angle_bam;
   }
-  return information_of(&sums, c, s->sensitivity.h_speed_q20);
+  return counts ? information_of(&sums, c, s->sensitivity.h_speed_q20) : no_information;
 }
 
 // The observed load follows its cause with a delay, the gain of the speed over that of the load: the ratio of their
 // covariances with the angle. Where the angle is not known, as with zero vectors at rest, there is no wave to be seen.
 void deviation_observer_learn(deviation_observer_t* s, const deviation_observer_config_t* c) {
-  if (!deviation_observer_is_sure(s)) return;
+  const bool idle = !s->cogging.active && s->cogging.order == c->cogging.order;
+  if (idle || !deviation_observer_is_sure(s)) return;
   const int32_t lag_q20 = q_min(qc_over(q_abs_sat(s->p_as), q_invert(q_abs_sat(s->p_al)), 20), LAG_MAX_Q20);
   const uint32_t turned_bam = (uint32_t)q_mul_sat(s->speed_bpp, lag_q20, 14);  // a unit of time is 64 periods
   const cogging_seen_t seen = {s->angle_bam - turned_bam, s->speed_bpp, s->load_accel_q8};
@@ -189,7 +189,7 @@ void deviation_observer_learn(deviation_observer_t* s, const deviation_observer_
 
 estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviation_observer_config_t* c,
                                            const estimator_input_t* in) {
-  information_t n = {0, 0, 0, 0, 0};
+  information_t n = no_information;
   predict(s, c, in->torque_accel_q8);
   if (in->window_count > 0u) {
     n = look(s, c, in);
@@ -199,7 +199,7 @@ estimator_output_t deviation_observer_step(deviation_observer_t* s, const deviat
   follow_scores(s, &n);
   const bool suspected = scores_suggest_step(s, &n);
   note_load(s, c, suspected);
-  if (in->renew || gain_is_old(s, in->moved)) {
+  if (in->renew || gain_is_old(s, in->busy)) {
     deviation_covariance_renew(s, c, suspected || s->load_step_suspected);
     s->load_step_suspected = false;
   }

@@ -47,8 +47,8 @@ typedef struct {
 
 /// What the observer has left unexplained since somebody last took it (deviation_take_mean_residual).
 typedef struct {
-  int32_t d_q11, q_q11;  // sum of what is left of the current's changes, A
-  int32_t span_ticks;    // of all windows
+  int32_t d_q17, q_q17;  // sum of what is left of the current's changes, A
+  int32_t span_ticks;    // of the windows
   int32_t periods;
 } deviation_residual_t;
 

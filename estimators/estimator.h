@@ -31,8 +31,9 @@ typedef struct {
   dq_t current_q18;     // current there, A
 } estimator_frame_t;
 
-/// Span of a window as a share of the period, Q30, 2e-6 of it less.
-static inline int32_t estimator_share_q30(const estimator_window_t* w) { return w->span_ticks * 107374L; }
+/// Span of windows as a share of the period, Q30, 2e-6 of it less.
+static inline int32_t estimator_span_q30(int32_t span_ticks) { return span_ticks * 107374L; }
+static inline int32_t estimator_share_q30(const estimator_window_t* w) { return estimator_span_q30(w->span_ticks); }
 
 typedef struct {
   const machine_model_t* model;
@@ -47,8 +48,8 @@ typedef struct {
   bool renew;
   // It takes its sensitivities anew: as the model, the speed and the current are now.
   bool refresh;
-  // The model has been moved in this period, which takes long: a covariance that nobody has asked for can wait for one.
-  bool moved;
+  // The period has something long beside it: a covariance that nobody has asked for can wait for the next.
+  bool busy;
   // The windows in a frame that runs on evenly from the estimator's last angle, where they are known, or null. From the
   // predicted angle it differs by half the change of speed over a period at most, 1e-4 rad.
   const estimator_frame_t* frames;

@@ -11,9 +11,10 @@
 
 #include "estimators/regression.h"
 
-/// Moves g, which stays within +-0.05. per_spread: of r->spread_q8; mean_q30: Y0 T; share_q30: part of the error taken
-/// over per period. Call it in the alternating layout only.
-void sensor_match_step(int32_t* mismatch_q30, const regression_t* r, q_inverse_t per_spread, int32_t mean_q30,
+/// Moves g, which stays within +-0.05. per_spread: of r->spread_q8; per_y0: of Y0 T, or of another that is near it: the
+/// error seen is in proportion; share_q30: part of the error taken over per period. Call it in the alternating layout
+/// only.
+void sensor_match_step(int32_t* mismatch_q30, const regression_t* r, q_inverse_t per_spread, q_inverse_t per_y0,
                        int32_t share_q30);
 
 #endif

@@ -103,7 +103,8 @@ void drive_estimate(const drive_t* d, drive_estimate_t* e) {
   in.renew = d->schedule.renews;
   in.refresh = moves || !d->schedule.turning;
   // Slower than this the angle is seen by the excitation alone, and less surely.
-  in.moved = moves && d->schedule.turning && q_abs_sat(e->selected.speed_bpp) > d->config.blend.high_bpp;
+  const bool is_fast = moves && q_abs_sat(e->selected.speed_bpp) > d->config.blend.high_bpp;
+  in.busy = is_fast || d->schedule.task < TASK_RENEW;
   in.windows = d->samples.windows;
   in.window_count = d->schedule.skips ? 0u : count;
   in.frames = frames;

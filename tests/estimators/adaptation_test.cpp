@@ -48,7 +48,8 @@ class Bench {
       (void)avv_step(&avv_, &kAvv, in.get());
       if (adapt) inverse_inductance_step(&model_, &avv_.regression, per_spread(avv_.regression), kShare);
       if (match)
-        sensor_match_step(&mismatch_q30_, &avv_.regression, per_spread(avv_.regression), mean_q30(), match_share);
+        sensor_match_step(&mismatch_q30_, &avv_.regression, per_spread(avv_.regression), q_invert(mean_q30()),
+                          match_share);
       machine_model_move(&model_, 0);
       largest_mismatch_ = std::max(largest_mismatch_, std::fabs(mismatch()));
       if (n >= periods - 600) sum += mismatch();

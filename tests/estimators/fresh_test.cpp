@@ -119,7 +119,7 @@ TEST(Fresh, DeviationObserver) {
   EXPECT_EQ(s.cogging.known_q30 | s.cogging.order | s.cogging.wave.cos_q30 | s.cogging.wave.sin_q30, 0);
   EXPECT_EQ(s.cogging.stepped_bam | s.regressed_bam, 0u);
   EXPECT_EQ(s.gathered.aa_q21 | s.gathered.as_q24 | s.gathered.ss_q21 | s.gathered.periods, 0);
-  EXPECT_EQ(s.residual.d_q11 | s.residual.q_q11 | s.residual.span_ticks | s.residual.periods, 0);
+  EXPECT_EQ(s.residual.d_q17 | s.residual.q_q17 | s.residual.span_ticks | s.residual.periods, 0);
   const deviation_sensitivity_t& h = s.sensitivity;
   EXPECT_EQ(h.rest_q17.d | h.rest_q17.q | h.h_speed_q20.d | h.h_speed_q20.q, 0);
   const regression_t& r = s.regression;

@@ -38,11 +38,11 @@ TEST(OneStep, SensorMatch) {
   std::int32_t mismatch_q30 = raw(0.001, 30);
   const double mean = 0.0166, off = -0.004, spread = 40000.0;
   const regression_t r = regression(spread, 0.0, 0.0, off * mean / std::sqrt(3.0) * spread);
-  sensor_match_step(&mismatch_q30, &r, q_invert(r.spread_q8), raw(mean, 30), raw(kShare, 30));
+  sensor_match_step(&mismatch_q30, &r, q_invert(r.spread_q8), q_invert(raw(mean, 30)), raw(kShare, 30));
   EXPECT_NEAR(real(mismatch_q30, 30), 0.001 + kShare * off, 1e-8);
   regression_t blind = r;
   blind.information = 0;
-  sensor_match_step(&mismatch_q30, &blind, q_invert(blind.spread_q8), raw(mean, 30), raw(kShare, 30));
+  sensor_match_step(&mismatch_q30, &blind, q_invert(blind.spread_q8), q_invert(raw(mean, 30)), raw(kShare, 30));
   EXPECT_NEAR(real(mismatch_q30, 30), 0.001 + kShare * off, 1e-8);
 }
 
@@ -257,18 +257,18 @@ TEST(OneStep, InformationBeyondItsBoundShrinksAlike) {
   deviation_observer_config_t c = {};
   c.weight_q8 = 1 << 20;
   information_sums_t sums = {};
-  sums.h_q14 = {3400, -5000};
+  sums.h_q15 = {3400, -5000};
   sums.e_q17 = {1300, 3000};
-  sums.square_q28 = 1 << 25;
-  sums.a_q32 = std::int64_t{1} << 21;
+  sums.span_ticks = 1250;
+  sums.a_q34 = std::int64_t{1} << 23;
   const dq_t h_s = {-20000000, 40000000};
   information_sums_t more = sums;
-  sums.aa_q30 = std::int64_t{1} << 25;
+  sums.aa_q32 = std::int64_t{1} << 27;
   const information_t within = information_of(&sums, &c, h_s);
   ASSERT_LT(std::max(within.aa, within.ss), INFORMATION_MAX);
   // the same windows with so much weight that the angle's information is beyond
   c.weight_q8 *= 512;
-  more.aa_q30 = sums.aa_q30;
+  more.aa_q32 = sums.aa_q32;
   const information_t beyond = information_of(&more, &c, h_s);
   EXPECT_NEAR(std::max(beyond.aa, beyond.ss), INFORMATION_MAX, 16.0);
   const double share = static_cast<double>(beyond.ss) / within.ss;

@@ -68,7 +68,7 @@ static inline estimator_input_t any_input(surroundings_t* around, uint16_t of_ca
   in.regress = any_bool();
   in.renew = any_bool();
   in.refresh = any_bool();
-  in.moved = any_bool();
+  in.busy = any_bool();
   in.frames = any_bool() ? around->frames : 0;
   in.iq_q20 = any_up_to_end(INT32_MAX);
   return in;

@@ -86,7 +86,7 @@ static void learn(void) {
   any_model(m);
   if (any_bool()) inverse_inductance_preset(m, any_i32, any_i32);
   inverse_inductance_step(m, &r, q_invert(r.spread_q8), any_share());
-  sensor_match_step(&mismatch_q30, &r, q_invert(r.spread_q8), any_from(1, INT32_MAX), any_share());
+  sensor_match_step(&mismatch_q30, &r, q_invert(r.spread_q8), q_invert(any_from(1, INT32_MAX)), any_share());
   any_model(m);
   if (any_bool()) voltage_match_resistance(m, any_i32);
   voltage_match_step(m, &r, machine_speed_rad_q30(any_speed()), any_share());

@@ -39,8 +39,8 @@ void voltage_match_resistance(machine_model_t* m, int32_t more_q24);
 void voltage_match_step(machine_model_t* m, const regression_t* r, int32_t w_q30, int32_t share_q30);
 
 /*@ requires \valid(mismatch_q30) && \valid_read(r); assigns *mismatch_q30 \from *mismatch_q30, *r, per_spread,
-   mean_q30, share_q30; ensures WITHIN(*mismatch_q30, MISMATCH_END_Q30); */
-void sensor_match_step(int32_t* mismatch_q30, const regression_t* r, q_inverse_t per_spread, int32_t mean_q30,
+   per_y0, share_q30; ensures WITHIN(*mismatch_q30, MISMATCH_END_Q30); */
+void sensor_match_step(int32_t* mismatch_q30, const regression_t* r, q_inverse_t per_spread, q_inverse_t per_y0,
                        int32_t share_q30);
 
 /*@ requires \valid(s) && \valid_read(c) && \valid_read(in); assigns *s, \result \from *s, *c, indirect:*in;

@@ -11,8 +11,8 @@ static surroundings_t around;
 
 static deviation_residual_t any_left(int32_t periods) {
   deviation_residual_t left;
-  left.d_q11 = any_from(-periods * LEFT_END_Q11, periods * LEFT_END_Q11);
-  left.q_q11 = any_from(-periods * LEFT_END_Q11, periods * LEFT_END_Q11);
+  left.d_q17 = any_from(-periods * LEFT_END_Q17, periods * LEFT_END_Q17);
+  left.q_q17 = any_from(-periods * LEFT_END_Q17, periods * LEFT_END_Q17);
   left.span_ticks = periods * any_from(0, 3 * PERIOD_TICKS);
   left.periods = periods;
   return left;
@@ -34,12 +34,12 @@ static void look_once(const estimator_input_t* in) {
 
 static void leave_after(int32_t periods) {
   information_sums_t n;
-  n.left_q15 = any_dq(LEFT_END_Q15);
-  n.span_ticks = any_from(1, 3 * PERIOD_TICKS);
+  n.e_q17 = any_dq(LEFT_END_Q17);
+  n.span_ticks = any_from(0, 3 * PERIOD_TICKS);
   deviation_residual_t left = any_left(periods);
   leave(&left, &n);
   //@ assert 1 <= left.periods <= 15 && 0 <= left.span_ticks <= left.periods * 30000;
-  //@ assert WITHIN(left.d_q11, left.periods * LEFT_END_Q11) && WITHIN(left.q_q11, left.periods * LEFT_END_Q11);
+  //@ assert WITHIN(left.d_q17, left.periods * LEFT_END_Q17) && WITHIN(left.q_q17, left.periods * LEFT_END_Q17);
 }
 
 static void leave_after_all(void) {

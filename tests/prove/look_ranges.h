@@ -10,8 +10,8 @@
 
 #define CHANGE_MAX_BPP 8388608L  // of a period's torque, foreseen
 
-/*@ requires \valid(left) && \valid_read(n) && VECTOR_DQ(n->left_q15, LEFT_END_Q15);
-    requires FROM_TO(n->span_ticks, 1, 30000); */
+/*@ requires \valid(left) && \valid_read(n) && VECTOR_DQ(n->e_q17, LEFT_END_Q17);
+    requires FROM_TO(n->span_ticks, 0, 30000); */
 static void leave(deviation_residual_t* left, const information_sums_t* n);
 
 /*@ requires \valid(s) && \valid_read(c) && \valid_read(in) && FROM_TO(in->window_count, 1, ESTIMATOR_WINDOWS);

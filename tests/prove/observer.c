@@ -94,7 +94,7 @@ static void begin(void) {
   //@ assert OF_VARIANCE(s.p_aa) && OF_VARIANCE(s.p_ss) && OF_VARIANCE(s.p_ll);
   //@ assert s.p_as == 0 && s.p_al == 0 && s.p_sl == 0 && FROM_TO(s.score_power_q23, 0, POWER_END_Q23);
   //@ assert s.gathered.periods == 0 && s.gathered.aa_q21 == 0 && s.gathered.as_q24 == 0 && s.gathered.ss_q21 == 0;
-  //@ assert s.residual.periods == 0 && s.residual.span_ticks == 0 && s.residual.d_q11 == 0 && s.residual.q_q11 == 0;
+  //@ assert s.residual.periods == 0 && s.residual.span_ticks == 0 && s.residual.d_q17 == 0 && s.residual.q_q17 == 0;
   //@ assert s.cogging.cos_q8 == 0 && s.cogging.sin_q8 == 0 && s.cogging.known_q30 == 0;
 }
 

@@ -13,7 +13,9 @@ from stillspin.cases.similarity import REFERENCE, Size, of
 
 PER_AMPERE = 5e-3
 """A rms of a current difference, of the sensors' range: quantisation and noise of 12 bits."""
-_MOST = 4.0
+_LEAST, _MOST = 1.0, 4.0
+_LEAST_BLIND = 0.5
+"""Without saliency: a small ripple says that the EMF changes the current little, and too much noise follows it late."""
 _OFF = 0.05  # of an inductance, before it is learnt
 _PULSE = 42e-6  # s, the drive's default
 
@@ -30,10 +32,10 @@ def times(plant: core.Plant) -> float:
     if size is None:
         return 1.0
     if open_loop.share(size.inductance_d, size.inductance_q) < open_loop.SALIENCY_LEAST:
-        ratio = _OFF * 2.0 / 3.0 * size.ripple * _PULSE / (PER_AMPERE * size.current_range)
+        least, ratio = _LEAST_BLIND, _OFF * 2.0 / 3.0 * size.ripple * _PULSE / (PER_AMPERE * size.current_range)
     else:
-        ratio = _believed(size) / _believed(REFERENCE)
-    return float(2.0 ** math.floor(math.log2(min(max(ratio, 1.0), _MOST))))
+        least, ratio = _LEAST, _believed(size) / _believed(REFERENCE)
+    return float(2.0 ** math.floor(math.log2(min(max(ratio, least), _MOST))))
 
 
 def _believed(size: Size) -> float:
