@@ -348,7 +348,9 @@ def test_a_sharp_angle_on_a_heavy_rotor_is_told_as_a_noisier_one(changes, factor
     assert observer_noise.times(plant) == 1.0
 
 
-@pytest.mark.parametrize(("ripple", "factor"), [(0.1, 0.5), (1.9, 0.5), (2.1, 1.0), (7.9, 2.0), (8.1, 4.0), (40.0, 4.0)])
+@pytest.mark.parametrize(
+    ("ripple", "factor"), [(0.1, 0.5), (1.9, 0.5), (2.1, 1.0), (7.9, 2.0), (8.1, 4.0), (40.0, 4.0)]
+)
 def test_without_saliency_the_noise_goes_by_what_an_inductance_that_is_off_makes_of_a_pulse(ripple, factor):
     """A pulse of 42 us and two thirds of the link; a twentieth of it over 5 mA for each of 20 A."""
     inductance = 2.0 / 3.0 * 300.0 * 42e-6 / ripple
