@@ -6,8 +6,8 @@
 //   residual = s - Y v + A i - w k0,  A = Y R - w K,
 //   h_angle = (J Y - Y J) u + w (J h - K J i),  h_speed = h.
 // What is measured is a change of the current, so all of it is multiplied with the window's span instead of divided by
-// it: every window then has the same noise. With Y = mean + mirror S, J Y - Y J is 2 J S of the mirrored voltage, which
-// Y v has made already. Products are upper words.
+// it. With Y = mean + mirror S, J Y - Y J is 2 J S of the mirrored voltage, which Y v has made already. Products are
+// upper words.
 // A and w k0 are the same for all windows of a period, and of the sensitivities, which only weight the residuals, the
 // part that the current makes is taken at one current of the period.
 // Y is that at the window's own torque current: a ripple puts windows under opposite vectors at opposite places of it,
