@@ -12,10 +12,10 @@
 #define SPEED_VARIANCE (64L * ONE_Q20)
 #define LOAD_VARIANCE (64L * ONE_Q20)
 #define STANDING_VARIANCE (ONE_Q20 / 4)  // 1.2 rad/s
-#define NOISE_SHARE 3                    // the noise is that of a window of a third of the period
-#define OUTLIER 192L                     // sigma in a window as long as the period: 48 in a quarter of it
-#define SCORE_BIAS_MIN 40                // a bias of 0.4 units of angle, a third of a degree; Q24 to Q20
-#define LAG_MAX_Q20 16777216L            // 16 units of time: 102 ms
+#define NOISE_SHARE 4                    // the noise is that of a window of a quarter of the period
+#define OUTLIER 192L           // times the noise in a window as long as the period, its share in a shorter one
+#define SCORE_BIAS_MIN 40      // a bias of 0.4 units of angle, a third of a degree; Q24 to Q20
+#define LAG_MAX_Q20 16777216L  // 16 units of time: 102 ms
 #define MEAN_SHIFT 5u
 #define POWER_SHIFT 8u
 #define POWER_START 419430L  // 0.05: nothing is suspected before the power is known
@@ -100,7 +100,7 @@ static void correct(deviation_observer_t* s, const information_t* n) {
 }
 
 // Eight periods of as much information as a period may have: 64 of them stay in 31 bits. Across it is as bounded, but
-// no interval shows that, and it has 64.
+// no interval shows that, and it has 64. The digit that is lost is a gain of 6e-5 at the most.
 static void gather(deviation_gathered_t* g, const information_t* n) {
   g->aa_q21 += q_shr(n->aa, 3);
   g->as_q24 += n->as;

@@ -31,7 +31,7 @@ typedef struct {
   dq_t current_q18;     // current there, A
 } estimator_frame_t;
 
-/// Span of windows as a share of the period, Q30, 2e-6 of it less.
+/// Span of one or more windows, up to 20 000 ticks, as a share of the period, Q30, 2e-6 of it less.
 static inline int32_t estimator_span_q30(int32_t span_ticks) { return span_ticks * 107374L; }
 static inline int32_t estimator_share_q30(const estimator_window_t* w) { return estimator_span_q30(w->span_ticks); }
 

@@ -142,9 +142,9 @@ static int16_t freed_by_q8(const machine_map_t* map, int32_t sixth_q30) {
   return (int16_t)(q_clamp(q_div(root_q24, sixth_q30, 14), 384, 24575) / 3 * 4);
 }
 
-// How stiffly a shaft is held while a brake opens: wc^2 is what the largest current makes of it per 0.2 rad, so that a
-// share of the largest load turns every shaft as far, in electrical degrees. A heavier one that is held more stiffly
-// asks for amperes by what the observer errs. 225 rad/s at most, which the current's own delay leaves.
+// How stiffly a shaft is held while a brake opens: wc^2 is the acceleration by the largest current and the magnet, over
+// 0.2 rad, so that a share of that torque turns every shaft below 225 rad/s as far, in electrical degrees. That much is
+// what the current's own delay leaves. A shaft that is held more stiffly asks for amperes by what the observer errs.
 static void load_release(drive_config_t* c) {
   const int32_t most_q16 = qc_mul_sat(c->nameplate.torque_q24, parameters.current_limit, 28);
   const int32_t accel_q8 = qc_mul_sat(c->nameplate.accel_q12, most_q16, 20);

@@ -104,7 +104,7 @@ void drive_estimate(const drive_t* d, drive_estimate_t* e) {
   in.refresh = moves || !d->schedule.turning;
   // Slower than this the angle is seen by the excitation alone, and less surely.
   const bool is_fast = moves && q_abs_sat(e->selected.speed_bpp) > d->config.blend.high_bpp;
-  in.busy = is_fast || d->schedule.task < TASK_RENEW;
+  in.busy = is_fast || d->schedule.judges || d->schedule.task == TASK_SPEED || d->schedule.task == TASK_FIELD;
   in.windows = d->samples.windows;
   in.window_count = d->schedule.skips ? 0u : count;
   in.frames = frames;

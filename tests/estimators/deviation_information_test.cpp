@@ -16,7 +16,7 @@ using namespace stillspin::test::seen;
 
 struct Period {
   double speed;  // that the score asks for, as a share of the true one
-  double least;  // the same by the worst single window
+  double alone;  // the same by one window, whichever is less off
 };
 
 // Two opposite vectors along q fill a period over which the current returns to where it was: v_q = +V for a share of
@@ -32,7 +32,7 @@ Period seen(double lq_share, double w, int between_ticks) {
   const double theta = 0.4;
   const int first = static_cast<int>(5000 * (1.0 + emf / volts));
   information_sums_t sums = {};
-  double worst = 0.0;
+  double alone = 1e9;
   const std::int32_t w_q30 = machine_speed_rad_q30(bpp(w));
   const deviation_model_t at = deviation_model(&model, w_q30);
   const deviation_sensitivity_t h = deviation_sensitivity(&model, w_q30, {0, 0});
@@ -50,12 +50,12 @@ Period seen(double lq_share, double w, int between_ticks) {
     for (information_sums_t* const n : {&sums, &own}) {
       information_collect(n, config.limit_q19, &h, &window, &change);
     }
-    const information_t alone = information_of(&own, &config, h.h_speed_q20);
-    worst = std::max(worst, std::fabs(real(alone.s, 20) / real(alone.ss, 24)));
+    const information_t said = information_of(&own, &config, h.h_speed_q20);
+    alone = std::min(alone, std::fabs(real(said.s, 20) / real(said.ss, 24)));
   }
   const information_t n = information_of(&sums, &config, h.h_speed_q20);
   const double unit = std::ldexp(1.0, -12) / kPeriod;  // rad/s
-  return {real(n.s, 20) / real(n.ss, 24) * unit / w, worst * unit / w};
+  return {real(n.s, 20) / real(n.ss, 24) * unit / w, alone * unit / w};
 }
 
 TEST(DeviationInformation, AnInductanceThatTheModelLacksIsNoSpeed) {
@@ -63,7 +63,7 @@ TEST(DeviationInformation, AnInductanceThatTheModelLacksIsNoSpeed) {
     for (const double w : {100.0, 300.0, 600.0}) {
       const Period whole = seen(lq, w, 0);
       EXPECT_LT(std::fabs(whole.speed), 0.01) << lq << ", " << w;
-      EXPECT_GT(whole.least, 0.15) << "a window by itself takes it for one: " << lq << ", " << w;
+      EXPECT_GT(whole.alone, 0.15) << "a window by itself takes it for one: " << lq << ", " << w;
     }
   }
 }

@@ -71,7 +71,7 @@ TEST_F(Learning, TheWatchTakesTheVoltagesTurnOfAFullPeriod) {
 // A turn takes 5/4 as long as the places say, and twice that while the shaft turns, where half as much again is learnt.
 TEST_F(Learning, SharesAreThoseOfTheParametersTimes) {
   learn_with(POSITION_OBSERVER);
-  const double yd = real(inside::model().yd_q30, 30);  // in the place of the mean: of what is learnt, slower
+  const double yd = real(inside::config().nameplate.map.points[0].ydd_q30, 30);  // in the place of the mean
   estimate(SLOT_INDUCTANCE);
   const double share = 1.5 * real(inside::config().adapt_share_q30, 30);
   EXPECT_NEAR(real(inside::model().trim.mean_q30, 30) / (share * 40.0 / 30000.0), 1.0, 1e-3);

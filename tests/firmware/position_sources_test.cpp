@@ -197,6 +197,24 @@ TEST_F(Sources, TheScheduleDecidesOnWindowsAndCovariance) {
   }
 }
 
+// A covariance of an angle that is not known is renewed by the windows alone, but not beside what is long: speed,
+// field, and a judgement that does take place.
+TEST_F(Sources, ACovarianceWaitsForThePeriodBehindALongTask) {
+  for (const task_t task : {TASK_SPEED, TASK_FIELD, TASK_JUDGE_FIRST, TASK_JUDGE, TASK_RENEW, TASK_SLOT}) {
+    for (const bool judges : {false, true}) {
+      run_with(POSITION_OBSERVER);
+      see_machine(kHere);
+      inside::schedule().task = task;
+      inside::schedule().judges = judges;
+      deviation_observer_t& o = inside::observer();
+      ASSERT_FALSE(deviation_observer_is_sure(&o)) << "as preset";
+      estimate();
+      const bool is_long = judges || task == TASK_SPEED || task == TASK_FIELD;
+      EXPECT_EQ(o.gathered.periods == 0, !is_long) << task << judges;
+    }
+  }
+}
+
 // A load that may fall on a held shaft is followed at once.
 TEST_F(Sources, AHeldShaftHasTheFastObserver) {
   std::int32_t grown[2];

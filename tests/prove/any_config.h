@@ -27,7 +27,7 @@ static inline void any_control(drive_config_t* c) {
   c->friction_per_bpp_q40 = any_from(0, INT32_MAX);
   c->ramp_step_bpp = any_from(0, INT32_MAX);
   c->hold_gain_q30 = any_from(0, 10737418L);
-  c->hold_below_bpp = any_from(0, SPEED_MAX_BPP / 4);
+  c->release_step_q30 = any_from(0, 24159191L);
   c->salient_q20 = any_from(0, INT32_MAX);
   c->salient_bpp_q4 = any_i32;
   c->freed_by_q8 = (int16_t)any_from(512, 32767);

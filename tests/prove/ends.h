@@ -35,7 +35,7 @@
 #define SHARE_END_Q12 740000000L                 // of the dead time's band: 1.37 times 1024 A, of any reciprocal
 #define VARIANCE_END_Q20 536870912L              // deviation_observer.c
 #define POWER_END_Q23 1073741823L                // of scores
-#define INFORMATION_END_Q21 16777217L            // of a period, deviation_information.h, and a rounding
+#define INFORMATION_END_Q21 16777216L            // of a period, deviation_information.h
 #define LEFT_END_Q17 75497472L                   // of a period: 192 A in each of three windows, deviation_observer.c
 #define RATIO_MIN_Q24 2097152L                   // of the inertia to the one that the parameters say
 #define RATIO_MAX_Q24 134217728L

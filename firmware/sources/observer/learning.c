@@ -13,7 +13,7 @@ static bool is_slot(const drive_t* d, schedule_slot_t slot) { return d->schedule
 static void match_sensors(const drive_t* d, drive_estimate_t* e, const regression_t* r, q_inverse_t per_spread,
                           int32_t share_q30) {
   if (!d->modulation.state.is_alternating) return;
-  // By Yd in the place of the mean a mismatch is taken for less, and learnt a little later.
+  // Ydd of the map in the place of the mean: its reciprocal is known, and a mismatch is learnt a little later.
   sensor_match_step(&e->trim.mismatch_q30, r, per_spread, e->model.per_ydd0, share_q30);
 }
 
