@@ -1,4 +1,4 @@
-"""How noisy the drive is told that the current's change in a quarter of a period is: its sensors' noise, more where the model is less sure.
+"""How noisy the drive is told that the current is: its sensors' noise, more where the model is less sure.
 
 The book has the rule with the others (docs/motors.md).
 """
