@@ -54,6 +54,6 @@ int32_t hold_step_q20(const drive_t* d) {
   const int32_t load_q20 = qc_mul_sat(d->estimate.selected.load_accel_q8, h->current_per_accel, 20);
   const int32_t restoring_q20 = qc_mul_sat(restoring_accel_q8(d), h->current_per_accel, 20);
   const int32_t current_q20 = qc_add_sat(load_q20, restoring_q20);
-  const int32_t limited_q20 = q_clamp(current_q20, -c->headroom_q20, c->headroom_q20);
+  const int32_t limited_q20 = q_limit(current_q20, c->headroom_q20);
   return q_clamp(limited_q20, c->references.current_q20.q - SLEW_Q20, c->references.current_q20.q + SLEW_Q20);
 }

@@ -15,7 +15,7 @@ PER_AMPERE = 5e-3
 """A rms of a current difference, of the sensors' range: quantisation and noise of 12 bits."""
 _LEAST, _MOST = 1.0, 4.0
 _LEAST_BLIND = 0.5
-"""Without saliency: a small ripple says that the EMF changes the current little, and too much noise follows it late."""
+"""Without saliency: where the ripple is small, the EMF changes the current little, and is followed late with more."""
 _OFF = 0.05  # of an inductance, before it is learnt
 _PULSE = 42e-6  # s, the drive's default
 
