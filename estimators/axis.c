@@ -3,7 +3,7 @@
 #include "hal/qmath/qcall.h"
 
 void axis_add(axis_t* s, const regression_t* r) {
-  if (r->information <= 0) return;
+  if (r->information <= 0 || axis_is_complete(s)) return;
   s->spread_q8 = qc_add_sat(s->spread_q8, r->spread_q8);
   s->along_q16 = qc_add_sat(s->along_q16, r->along_q16);
   s->mirror_q16 = qc_add_sat(s->mirror_q16, r->mirror_q16);

@@ -59,7 +59,7 @@ static inline information_t bounded(const information_t* n) {
 
 // In units of the states and of the noise: of angle 2^-6 rad, of speed 2^-12 rad per period, in Q24, scores in Q20.
 // Where the information is within its bound, 8, so are the rest: its product aa ss is not below the square of as, and a
-// score not above 136 times the root of it (OUTLIER sqrt(2 / NOISE_SHARE), with windows as long as the period).
+// score not above 157 times the root of it (OUTLIER sqrt(2 / NOISE_SHARE), with windows as long as the period).
 static inline information_t information_of(const information_sums_t* n, const deviation_observer_config_t* c,
                                            dq_t h_s) {
   const int64_t as_q35 = q_mac(q_product(h_s.d, n->h_q15.d), h_s.q, n->h_q15.q);

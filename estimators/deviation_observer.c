@@ -12,7 +12,7 @@
 #define SPEED_VARIANCE (64L * ONE_Q20)
 #define LOAD_VARIANCE (64L * ONE_Q20)
 #define STANDING_VARIANCE (ONE_Q20 / 4)  // 1.2 rad/s
-#define NOISE_SHARE 4                    // the noise is that of a window of a quarter of the period
+#define NOISE_SHARE 3                    // the noise is that of a window of a third of the period
 #define OUTLIER 192L           // times the noise in a window as long as the period, its share in a shorter one
 #define SCORE_BIAS_MIN 40      // a bias of 0.4 units of angle, a third of a degree; Q24 to Q20
 #define LAG_MAX_Q20 16777216L  // 16 units of time: 102 ms

@@ -25,7 +25,7 @@
 #include "estimators/regression.h"
 
 typedef struct {
-  int32_t noise_q20;            // rms error of a change in a quarter of a period, A, 0.001 (also for less) to 1
+  int32_t noise_q20;            // rms error of a change in a third of a period, A, 0.001 (also for less) to 1
   int32_t load_rate_q20;        // load change expected in 10 ms, N m
   int32_t load_rate_quiet_q20;  // the same at a crawl, while nothing shows that the load changes, cogging unknown
   int32_t load_step_q20;        // step of the load to look out for at a crawl, N m
@@ -34,7 +34,7 @@ typedef struct {
 } deviation_observer_tuning_t;
 
 typedef struct {
-  int32_t weight_q8;             // 1 / variance of the current's change in a period, A^-2, 1/4..2.5e5
+  int32_t weight_q8;             // 1 / variance of the current's change in a period, A^-2, 1/3..3.3e5
   int32_t limit_q19;             // A: what is left of a window counts as its share of this at most
   int32_t load_noise_q20;        // variance that the load gains per period, own units
   int32_t load_noise_quiet_q20;  // the same at a crawl, while nothing shows that it changes

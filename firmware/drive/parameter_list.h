@@ -22,7 +22,7 @@ PARAMETER(63, avv_bandwidth_long, RAD_PER_S, 8, 0, 10, 600, 200, ALWAYS, "bandwi
 PARAMETER(64, avv_bandwidth_short, RAD_PER_S, 8, 0, 10, 600, 100, ALWAYS, "bandwidth of AVV's observer, short windows")
 PARAMETER(65, adapt_time, MS, 8, 0, 20, 30000, 150, ALWAYS,
           "time constant of the adaptation of inverse inductances and sensors; 30000: off")
-PARAMETER(66, observer_noise, MA, 8, 1, 10, 10000, 1000, ALWAYS, "rms error of the current change over 25 us")
+PARAMETER(66, observer_noise, MA, 8, 1, 10, 10000, 1000, ALWAYS, "rms error of the current change over 33 us")
 PARAMETER(67, observer_load_rate, NM, 20, 2, 1, 10000, 100, ALWAYS, "load change per 10 ms that the observer expects")
 PARAMETER(75, observer_load_quiet, NM, 20, 2, 1, 10000, 5, ALWAYS,
           "observer_load_rate at a crawl, while the load seems steady")

@@ -15,7 +15,7 @@
 #define CALM_PERIODS 100u    // without current after a test, for the angle and for what is learnt of a standing shaft
 #define RESISTANCE_SHARE 16  // less than a sixteenth off is left alone
 #define SATURATION_TRIES 3u
-#define MOTION_TRIES 3u
+#define MOTION_TRIES 4u
 #define HELD_TRIES 6u
 #define HOLD_BACKS 2u
 #define TURNING_RPM_Q16 1310720L  // 20 rpm: slower counts as standing, AVV's speed is noise
@@ -104,10 +104,10 @@ static void begin_motion(drive_t* d) {
   drive_start_t* const s = &starting;
   if (s->phase != START_MOTION) s->tries = 0;
   const tracking_observer_t* const seen = &d->estimate.avv.observer;
-  if (s->starved && s->tries > 0u) {
+  const int32_t current = motion_current(s);
+  if (s->tries > 0u && (s->starved || current == s->motion.current_q20)) {
     polarity_again(&s->motion, seen->angle_bam, seen->speed_bpp);
   } else {
-    const int32_t current = motion_current(s);
     polarity_begin(&s->motion, current, drive_accel_q8(d, 0, current), seen->angle_bam, seen->speed_bpp);
     s->motion.bounded = s->starved;
   }

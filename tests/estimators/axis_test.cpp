@@ -81,6 +81,29 @@ TEST(Axis, PeriodsWithoutTwoVectorsDoNotCount) {
   EXPECT_EQ(axis.count, 0);
 }
 
+// A direction that is seen once more than the others would be a share of the saliency, and of a curl.
+TEST(Axis, OnlyWholeRoundsCount) {
+  const machine_model_t model = model_of(Motor{});
+  Motor truth;
+  truth.ld *= 0.7;
+  avv_t avv = {};
+  axis_t axis;
+  axis_begin(&axis);
+  axis_result_t found = {};
+  for (int n = 0; n < AXIS_PERIODS + 5; ++n) {
+    const std::vector<Window> windows = alternating(truth, n, 0.4, 0.0, Vector{0, 0});
+    const Input in(model, windows);
+    avv_preset(&avv, 0, 0, 0);
+    (void)avv_step(&avv, &kAvv, in.get());
+    axis_add(&axis, &avv.regression);
+    if (n == AXIS_PERIODS - 1) found = axis_evaluate(&axis, &model);
+  }
+  const axis_result_t later = axis_evaluate(&axis, &model);
+  EXPECT_EQ(axis.count, AXIS_PERIODS);
+  EXPECT_EQ(later.angle_bam, found.angle_bam);
+  EXPECT_EQ(later.half_q30, found.half_q30);
+}
+
 TEST(Axis, TheModelTakesItOver) {
   Motor truth;
   truth.ld *= 1.2;

@@ -35,7 +35,7 @@ class Reference {
       const Vector hs =
           (residual(w, x_[0] - d * back, x_[1] - d) - residual(w, x_[0] + d * back, x_[1] + d)) * (0.5 / d);
       for (const double axis : {0.0, 1.0}) {
-        const double scale = std::sqrt(w.span_ticks / 40000.0) / noise_;  // of a quarter of the period
+        const double scale = std::sqrt(w.span_ticks / 30000.0) / noise_;  // of a third of the period
         const auto of = [&](Vector v) { return (axis == 0.0 ? v.x : v.y) * scale; };
         const double h[2] = {of(ha), of(hs)};
         for (int i = 0; i < 2; ++i) {

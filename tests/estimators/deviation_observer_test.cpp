@@ -56,13 +56,13 @@ class Filter {
     p[2][2] += load_variance;
   }
 
-  // sigma: rms error of a current difference over a quarter of the period, A; its square grows with the window
+  // sigma: rms error of a current difference over a third of the period, A; its square grows with the window
   void update(const Motor& m, const std::vector<Window>& windows, double sigma) {
     const double angle0 = angle, speed0 = speed, load0 = load;
     Row x{0.0, 0.0, 0.0};  // correction so far
     for (const Window& w : windows) {
       const double at = angle0 - speed0 * (10000 - w.middle) * 1e-4;
-      const double scale = std::sqrt(w.span * 1e-4 / 4.0) / sigma;
+      const double scale = std::sqrt(w.span * 1e-4 / 3.0) / sigma;
       const auto slope = [&](double theta, double rad_per_period) {
         return (current_derivative(m, theta, rad_per_period / m.period, w.current, w.voltage) * m.period).turned(-at);
       };

@@ -212,11 +212,11 @@ TEST(DeviationSteps, DesignKeepsAboveItsRanges) {
   };
   const double least = real(1049, 20);  // 1 mA
   for (const std::int32_t noise_q20 : {0, 1000, 1048, 1049}) {
-    EXPECT_NEAR(real(with_noise(noise_q20).weight_q8, 8) * least * least, 1.0 / 4.0, 1e-5) << noise_q20;
+    EXPECT_NEAR(real(with_noise(noise_q20).weight_q8, 8) * least * least, 1.0 / 3.0, 1e-5) << noise_q20;
     EXPECT_EQ(with_noise(noise_q20).limit_q19, 96 * 1049) << noise_q20;
   }
   EXPECT_EQ(with_noise(1050).limit_q19, 96 * 1050);
-  EXPECT_EQ(with_noise(kOne).weight_q8, 256 / 4);
+  EXPECT_EQ(with_noise(kOne).weight_q8, 256 / 3);
   EXPECT_EQ(with_noise(kOne).limit_q19, 96 * kOne);
   EXPECT_EQ(with_noise(kOne - 1).limit_q19, 96 * (kOne - 1));
 

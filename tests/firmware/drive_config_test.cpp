@@ -80,7 +80,7 @@ TEST_F(DriveConfig, DefaultsAreValidAndMotorAs) {
   EXPECT_NEAR(real(c.volts_per_code_q16, 16), 450.0 / 4096.0, 1.0 / 65536.0);
   EXPECT_NEAR(real(c.avv.bandwidth_long_q30, 30), 200.0 * kPeriod, 1e-8);
   EXPECT_NEAR(real(c.avv.bandwidth_short_q30, 30), 100.0 * kPeriod, 1e-8);
-  EXPECT_NEAR(real(c.observer.weight_q8, 8), 100.0 / 4.0, 0.01);  // 100 mA
+  EXPECT_NEAR(real(c.observer.weight_q8, 8), 100.0 / 3.0, 0.01);  // 100 mA
   EXPECT_NEAR(real(c.observer.limit_q19, 19), 19.2, 0.01);
   EXPECT_NEAR(real(c.adapt_share_q30, 30), SCHEDULE_SLOTS * kPeriod / 150e-3, 1e-8);
   const double newton_metres =

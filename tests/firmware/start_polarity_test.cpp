@@ -214,7 +214,7 @@ TEST_F(StartStanding, ACreepingShaftIsNotTheVoltagesFault) {
   start().held_back = 1;
   at(START_SETTLE, 100);
   step();
-  for (const double amps : {4.0, 8.0, 14.0}) {
+  for (const double amps : {4.0, 8.0, 14.0, 14.0}) {
     EXPECT_EQ(start().motion.current_q20, raw(amps, 20));
     EXPECT_FALSE(start().motion.bounded);
     motion_says(0.1);
@@ -230,18 +230,20 @@ TEST_F(StartStanding, ACreepingShaftIsNotTheVoltagesFault) {
   EXPECT_EQ(inside::fault(), FAULT_POLARITY);
 }
 
-// Twice the current with each try, up to the limit; after three the polarity is a fault that says how sure it was.
-TEST_F(StartStanding, WhatMotionLeavesOpenIsAFaultAfterThreeTries) {
+// Twice the current with each try, up to the limit; what is tried with the same is added up. After four the polarity is
+// a fault that says how sure it was.
+TEST_F(StartStanding, WhatMotionLeavesOpenIsAFaultAfterFourTries) {
   parameters.polarity_current = raw(4.0, 20);
   parameters.current_limit = raw(14.0, 20);
   use_parameters();
   inside::config().saturation = {0, 0};
   at(START_SETTLE, 100);
   step();
-  for (const double amps : {4.0, 8.0, 14.0}) {
+  for (const auto& [amps, passes] : {std::pair{4.0, 1}, {8.0, 1}, {14.0, 1}, {14.0, 2}}) {
     EXPECT_EQ(inside::state(), DRIVE_START);
     EXPECT_EQ(inside::start_phase(), START_MOTION);
     EXPECT_EQ(start().motion.current_q20, raw(amps, 20));
+    EXPECT_EQ(start().motion.passes, passes);
     motion_says(0.1);
   }
   EXPECT_EQ(inside::state(), DRIVE_FAULT);

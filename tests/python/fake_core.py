@@ -116,7 +116,7 @@ _PARAMETERS = [
     (60, "position_source", "", 0, 0.0, 8.0, 4.0, "STOPPED", "where the angle comes from"),
     (61, "blend_low", "rpm", 1, 5.0, 1000.0, 60.0, "STOPPED", "speed below which the low-speed estimator is used"),
     (62, "blend_high", "rpm", 1, 6.0, 2000.0, 100.0, "STOPPED", "speed above which AVV is used"),
-    (66, "observer_noise", "mA", 1, 1.0, 1000.0, 100.0, "ALWAYS", "rms error of the current change over 25 us"),
+    (66, "observer_noise", "mA", 1, 1.0, 1000.0, 100.0, "ALWAYS", "rms error of the current change over 33 us"),
     (67, "observer_load_rate", "Nm", 2, 0.01, 100.0, 0.6, "ALWAYS", "load change per 10 ms"),
     (75, "observer_load_quiet", "Nm", 2, 0.01, 100.0, 0.05, "ALWAYS", "load change per 10 ms at a crawl"),
     (68, "observer_windows", "", 0, 0.0, 1.0, 1.0, "ALWAYS", "windows of the observer"),
