@@ -95,7 +95,7 @@ static start_phase_t starve(drive_t* d) {
 // Twice as much with each try, while there is the saliency that the motion is read from; after one that the voltage was
 // too low for, half of that.
 static int32_t motion_current(const drive_start_t* s) {
-  if (s->starved && s->motion.current_q20 > 0) return s->motion.current_q20 / 2;
+  if (s->starved && s->motion.current_q20 > 0) return q_shr(s->motion.current_q20, 1);
   const int32_t most_q20 = q_min(drive.config.salient_q20, drive.config.values.current_limit);
   return q_min(qc_shl_sat(drive.config.values.polarity_current, s->tries), most_q20);
 }
@@ -105,7 +105,7 @@ static void begin_motion(drive_t* d) {
   if (s->phase != START_MOTION) s->tries = 0;
   const tracking_observer_t* const seen = &d->estimate.avv.observer;
   const int32_t current = motion_current(s);
-  if (s->tries > 0u && (s->starved || current == s->motion.current_q20)) {
+  if (s->tries > 0u && current <= s->motion.current_q20) {
     polarity_again(&s->motion, seen->angle_bam, seen->speed_bpp);
   } else {
     polarity_begin(&s->motion, current, drive_accel_q8(d, 0, current), seen->angle_bam, seen->speed_bpp);
@@ -118,7 +118,7 @@ static void begin_motion(drive_t* d) {
 static void begin_saturation(drive_t* d) {
   drive_start_t* const s = &starting;
   if (s->phase != START_SATURATION) s->tries = 0;
-  const int32_t more = (s->tries >= 2u) ? d->config.values.start_current / 2 : 0;
+  const int32_t more = (s->tries >= 2u) ? q_shr(d->config.values.start_current, 1) : 0;
   const int32_t current = q_min(d->config.values.start_current + more, d->config.values.current_limit);
   if (s->tries == 1u) {
     saturation_again(&s->saturation);
