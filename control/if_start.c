@@ -5,6 +5,7 @@
 #define ANGLE_80_DEG 954437177L
 #define SHIFT_MAX_BAM ((int32_t)ANGLE_BAM_EIGHTH_TURN)
 #define MEAN_SHIFT 10u  // 100 ms
+#define TURNING_MOST_Q16 655360000L  // 10 kV
 #define FILTER_LEAST 3u
 #define FILTER_MOST 8u
 #define AWAY_SHARE 16      // times least_q16, an eighth of the EMF at the last speed: twice that
@@ -30,6 +31,8 @@ bool if_start_design(if_start_config_t* c, const machine_model_t* m) {
   c->filter_shift = filter_shift(c, m);
   // w = v / lambda: rad per period of v over lambda/T, as binary angle.
   c->per_emf_q4 = q_div(ANGLE_BAM_PER_RAD, m->emf_q16, 20);
+  const int32_t per_period_q16 = q_div(m->emf_q16, m->flux_q28, 28);
+  c->reactance_q48 = qc_mul_sat(m->ld_q30, q_div(per_period_q16, ANGLE_BAM_PER_RAD, 24), 22);
   c->resistance_q24 = m->nominal_rs_q24;
   c->least_q16 = q_div(c->speed_bpp / 8, c->per_emf_q4, 20);
   return q_in_range(c->damping_periods, 10, 10000);
@@ -94,11 +97,19 @@ static void renew_direction(if_start_t* s, const if_start_config_t* c) {
   s->per_emf_q4.q = qc_mul(q_div(q, length, 30), c->per_emf_q4, 30);
 }
 
+static dq_t emf_of(const if_start_t* s, dq_t voltage_q16) {
+  const dq_t emf_q16 = {qc_sub_sat(voltage_q16.d, s->own_q16.d), qc_sub_sat(voltage_q16.q, s->own_q16.q)};
+  return emf_q16;
+}
+
 void if_start_renew(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
   renew_direction(s, c);
-  s->drop_q16 = qc_mul_sat(c->resistance_q24, s->current_q20, 28);
+  s->own_q16.d = qc_mul_sat(c->resistance_q24, s->current_q20, 28);
+  const int32_t turning_q16 = qc_mul_sat(qc_mul_sat(c->reactance_q48, s->current_q20, 32), s->speed_bpp, 20);
+  s->own_q16.q = q_limit(turning_q16, TURNING_MOST_Q16);
   if (!s->took_over || if_start_is_up(s, c)) return;
-  const int32_t across_q16 = frame_largest(qc_sub_sat(voltage_q16.d, s->drop_q16), voltage_q16.q);
+  const dq_t emf_q16 = emf_of(s, voltage_q16);
+  const int32_t across_q16 = frame_largest(emf_q16.d, emf_q16.q);
   s->waited = (across_q16 / AWAY_SHARE > c->least_q16) ? q_min(s->waited, 0) - 1 : 0;
 }
 
@@ -107,7 +118,7 @@ void if_start_renew(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16)
 static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
   const bool settling = s->agreed < 0;
   const uint16_t slow = settling ? SETTLE_SHIFT : MEAN_SHIFT;
-  const dq_t emf_q16 = {qc_sub_sat(voltage_q16.d, s->drop_q16), voltage_q16.q};
+  const dq_t emf_q16 = emf_of(s, voltage_q16);
   s->mean_q16.d = qc_follow(s->mean_q16.d, emf_q16.d, slow);
   s->mean_q16.q = qc_follow(s->mean_q16.q, emf_q16.q, slow);
   const int32_t seen = q_mul_add_sat(s->per_emf_q4.d, emf_q16.d, s->per_emf_q4.q, emf_q16.q, 20);

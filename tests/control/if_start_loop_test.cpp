@@ -28,7 +28,7 @@ struct Quiet {
 class Start {
  public:
   Start(const Motor& motor, double load) : m_(motor), model_(model_of(motor)), load_(load) {
-    turn_config_ = {raw(kCurrent, 20), 1000, bpp(500.0 / 60.0 * kTurn * 4.0) / 10000, bpp(125.7), 5000, 0, 0, 0, 0, 0};
+    turn_config_ = {raw(kCurrent, 20), 1000, bpp(500.0 / 60.0 * kTurn * 4.0) / 10000, bpp(125.7), 5000, 0, 0, 0, 0, 0, 0};
     EXPECT_TRUE(if_start_design(&turn_config_, &model_));
     current_controller_design(&current_config_, &model_, &kDesign);
     current_controller_reset(&current_);
@@ -94,11 +94,11 @@ class Start {
   Vector voltage_ = {0.0, 0.0}, i_ = {0.0, 0.0}, mean_ = {0.0, 0.0};
 };
 
-// Motors of which the vector's own flux is up to half of the magnet's.
+// Motors of which the vector's own flux is up to four fifths of the magnet's.
 Motor any_motor(Random& random) {
   Motor m;
   m.flux = random.log_between(0.05, 0.3);
-  m.lq = random.log_between(0.06, 0.5) * m.flux / kCurrent;
+  m.lq = random.log_between(0.06, 0.8) * m.flux / kCurrent;
   m.ld = m.lq / random.between(1.0, 2.5);
   m.rs = m.lq * random.log_between(20.0, 100.0);
   const double w0 = random.log_between(30.0, 150.0);

@@ -130,6 +130,7 @@ TEST(IfStart, WhatTheDesignMakesOfTheMachine) {
   const if_start_config_t c = designed(m, p);
   EXPECT_NEAR(real(c.least_q16, 16), 125.7 * m.flux / 8.0, 1e-4);
   EXPECT_NEAR(real(c.per_emf_q4, 4) / bpp(1.0 / m.flux), 1.0, 3e-6);
+  EXPECT_NEAR(real(c.reactance_q48, 48) * bpp(1.0) / m.ld, 1.0, 2e-5);
   // (w0 T)^2 = 1.5 p^2 lambda I / J T^2
   const double w0 = std::sqrt(1.5 * 16.0 * m.flux * 8.0 / m.inertia);
   EXPECT_NEAR(c.damping_periods, 1.0 / (w0 * kPeriod), 1.0);
@@ -184,7 +185,8 @@ TEST(IfStart, ItRisesAQuarterTurnBehind) {
   }
 }
 
-// What it sees follows with a 32nd of the difference in each period, the mean with 1/1024.
+// What it sees follows with a 32nd of the difference in each period, the mean with 1/1024. What the vector takes by
+// itself does not count.
 TEST(IfStart, ItsFiltersHaveTheirTimes) {
   const if_start_config_t c = designed(motor_b(), usual());
   if_start_t s;
@@ -193,8 +195,9 @@ TEST(IfStart, ItsFiltersHaveTheirTimes) {
   double rotor = 0.0, mean = 0.0;
   for (int n = 1; n <= 3000; ++n) {
     const double drop = motor_b().rs * 8.0 * std::min((n - 1) / 500.0, 1.0);  // of the current that is known then
+    const double turning = motor_b().ld * 8.0 * rad_per_s(s.speed_bpp);
     if_start_renew(&s, &c, {0, 0});
-    (void)if_start_step(&s, &c, raw_dq({drop, emf}, 16), 0, 0);
+    (void)if_start_step(&s, &c, raw_dq({drop, emf + turning}, 16), 0, 0);
     rotor += (seen - rotor) / std::ldexp(1.0, c.filter_shift);
     mean += (rotor - mean) / 1024.0;
     ASSERT_NEAR(s.rotor_bpp, rotor, 2e-4 * seen) << n;
@@ -262,8 +265,9 @@ TEST(IfStart, TheEmfAlongItsDirectionIsTheRotorsSpeed) {
         const Vector emf = {way * speed * m.flux * std::sin(lag), way * speed * m.flux * std::cos(lag)};
         for (int n = 0; n < 20000; ++n) {
           const double drop = m.rs * 8.0 * std::min((n + 1) / 500.0, 1.0);
+          const double turning = m.ld * 8.0 * rad_per_s(s.speed_bpp);
           if (n % 10 == 0) if_start_renew(&s, &c, {0, 0});
-          (void)if_start_step(&s, &c, raw_dq({emf.x + drop, emf.y}, 16), 0, 0);
+          (void)if_start_step(&s, &c, raw_dq({emf.x + drop, emf.y + turning}, 16), 0, 0);
         }
         const Vector along = {way * emf.x, way * emf.y + real(c.least_q16, 16)};
         const double seen = (along.x * emf.x + along.y * emf.y) / along.length() / m.flux;

@@ -83,7 +83,7 @@ static void any_vector(if_start_t* s, const if_start_config_t* c) {
   s->mean_q16 = any_dq(TURN_EMF_END_Q16);
   s->per_emf_q4.d = any_i32;
   s->per_emf_q4.q = any_i32;
-  s->drop_q16 = any_from(-TURN_DROP_END_Q16, TURN_DROP_END_Q16);
+  s->own_q16 = any_dq(TURN_OWN_END_Q16);
   s->rotor_bpp = any_i32;
   s->mean_bpp = any_i32;
   s->agreed = any_from(-40, IF_START_AGREED - 1);
@@ -99,6 +99,7 @@ static void turn_vector(int32_t periods) {
                          any_from(0, TURN_MAX_BPP),
                          any_from(1, TURN_MAX_BPP),
                          any_from(0, 100000L),
+                         0,
                          0,
                          0,
                          0,

@@ -51,16 +51,16 @@ int32_t speed_controller_step(speed_controller_t* s, speed_law_t law, const spee
     ensures FLAG(\result); ensures FROM_TO(s->nominal.share_q30, 0, 1073741824); */
 bool speed_controller_init(speed_controller_t* s, const speed_controller_config_t* c, const machine_model_t* m);
 
-// What the current controller may command; 200 A through 50 ohm; the mean of what that leaves, so that its sign may
-// change.
+// What the current controller may command; 200 A through 50 ohm, and as much for turning; the mean of what that leaves,
+// so that its sign may change.
 #define TURN_COMMAND_END_Q16 268435456L
-#define TURN_DROP_END_Q16 655360000L
+#define TURN_OWN_END_Q16 655360000L
 #define TURN_EMF_END_Q16 923795456L
 
-/*@ requires \valid(s) && \valid_read(c) && WITHIN(s->drop_q16, TURN_DROP_END_Q16);
+/*@ requires \valid(s) && \valid_read(c) && VECTOR_DQ(s->own_q16, TURN_OWN_END_Q16);
     requires VECTOR_DQ(voltage_q16, TURN_COMMAND_END_Q16);
     assigns *s, \result \from *s, *c, voltage_q16, seen_bam, seen_bpp;
-    ensures VECTOR_DQ(s->mean_q16, TURN_EMF_END_Q16) && WITHIN(s->drop_q16, TURN_DROP_END_Q16);
+    ensures VECTOR_DQ(s->mean_q16, TURN_EMF_END_Q16) && VECTOR_DQ(s->own_q16, TURN_OWN_END_Q16);
     ensures WITHIN(s->speed_bpp, TURN_MAX_BPP) && FROM_TO(s->tick, 0, 65536) && FLAG(s->took_over);
     ensures WITHIN(s->end_bpp, TURN_MAX_BPP) && FROM_TO(s->sign, -1, 1) && FROM_TO(s->waited, -51, 100001);
     ensures FROM_TO(s->current_q20, 0, 200 * AMPERES_Q20); ensures FROM_TO(\result, 0, 2); */

@@ -115,7 +115,7 @@ static void take_resistance(drive_t* d) {
   const int32_t left = if_ramp_config.align_periods - if_ramp.tick;
   const bool measures = if_is_blind && d->config.sensor_mismatch_q30 != 0;
   if (!measures || left <= 0 || left > (int32_t)DRIVE_PERIODS_PER_MS) return;
-  const int32_t voltage_q16 = qc_add_sat(if_ramp.mean_q16.d, if_ramp.drop_q16);
+  const int32_t voltage_q16 = qc_add_sat(if_ramp.mean_q16.d, if_ramp.own_q16.d);
   machine_model_t* const m = &d->estimate.model;
   voltage_match_resistance(m, q_div(voltage_q16, mean_length_q20(d), 28) - m->rs_q24);
 }
