@@ -31,8 +31,7 @@ bool if_start_design(if_start_config_t* c, const machine_model_t* m) {
   c->filter_shift = filter_shift(c, m);
   // w = v / lambda: rad per period of v over lambda/T, as binary angle.
   c->per_emf_q4 = q_div(ANGLE_BAM_PER_RAD, m->emf_q16, 20);
-  const int32_t per_period_q16 = q_div(m->emf_q16, m->flux_q28, 28);
-  c->reactance_q48 = qc_mul_sat(m->ld_q30, q_div(per_period_q16, ANGLE_BAM_PER_RAD, 24), 22);
+  c->reactance_q48 = q_div(m->ld_q16, ANGLE_BAM_PER_RAD, 32);
   c->resistance_q24 = m->nominal_rs_q24;
   c->least_q16 = q_div(c->speed_bpp / 8, c->per_emf_q4, 20);
   return q_in_range(c->damping_periods, 10, 10000);

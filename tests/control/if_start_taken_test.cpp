@@ -35,6 +35,36 @@ TEST(IfStart, TakesATurningRotorThroughStandstill) {
   }
 }
 
+// A vector whose own flux is half of the magnet's holds a rotor, too, that two thirds of its rated torque let swing: what
+// the vector takes by itself is no EMF.
+TEST(IfStart, ALongVectorLetsNoRotorSwingAway) {
+  Shaft shaft;
+  shaft.m.rs = 0.268;
+  shaft.m.ld = shaft.m.lq = 2.2e-3;
+  shaft.m.flux = 0.12258;
+  shaft.m.inertia = 0.0146;
+  if_start_config_t given = usual();
+  given.current_q20 = raw(19.6, 20);
+  given.speed_bpp = bpp(440.0);
+  const if_start_config_t c = designed(shaft.m, given);
+  for (const double off : {0.0, 0.2}) {
+    shaft.speed = 440.0;
+    shaft.angle = 0.0;
+    shaft.pull = 9.65;
+    const double ahead = std::asin(shaft.pull / (shaft.m.torque_constant() * 30.0)) + off;
+    if_start_t s = {};
+    if_start_begin_turning(&s, &c, bam(ahead), raw(30.0, 20), bpp(shaft.speed));
+    Vector voltage = shaft.step(rad(s.angle_bam), 30.0);
+    for (int n = 0; n < 20000; ++n) {
+      if (n % 10 == 0) if_start_renew(&s, &c, raw_dq(voltage, 16));
+      (void)if_start_step(&s, &c, raw_dq(voltage, 16), bam(shaft.angle + kPi), bpp(shaft.speed));
+      voltage = shaft.step(rad(s.angle_bam), 30.0);
+      ASSERT_LT(std::fabs(wrapped(rad(s.vector_bam) - shaft.angle)), 1.3) << off << ", " << n;
+    }
+    EXPECT_NEAR(shaft.speed, 440.0, 4.4) << off;
+  }
+}
+
 // What it takes over is known when its current has settled: neither the EMF that the load turns nor a current on its
 // way is taken for a speed. The vector stays where it was put for 4 ms, however fast it is and whoever agrees with it,
 // and within a quarter of what it may turn behind that.
