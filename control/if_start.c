@@ -4,7 +4,7 @@
 
 #define ANGLE_80_DEG 954437177L
 #define SHIFT_MAX_BAM ((int32_t)ANGLE_BAM_EIGHTH_TURN)
-#define MEAN_SHIFT 10u  // 100 ms
+#define MEAN_SHIFT 10u               // 100 ms
 #define TURNING_MOST_Q16 655360000L  // 10 kV
 #define FILTER_LEAST 3u
 #define FILTER_MOST 8u

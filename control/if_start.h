@@ -7,8 +7,9 @@
 // and vector are a spring, w0^2 = p Kt I / J, that nothing damps but friction. So the vector is turned back by w~/w0,
 // half of critical damping. w~ is the rotor's speed from the EMF along its mean direction, less the mean of 100 ms:
 // what the drops make of it stands still, and counts for nothing. A direction that is not the EMF's own closes a loop
-// over the lag, with a gain of (w/w0) sin of what it is off: the lag for the component across the vector, and much where
-// the vector's own flux is like the magnet's, if the voltage w Ld I that it takes by itself is not taken away before.
+// over the lag, with a gain of (w/w0) sin of what it is off: the lag for the component across the vector, and much
+// where the vector's own flux is like the magnet's, if the voltage w Ld I that it takes by itself is not taken away
+// before.
 //
 // What the damping turns the vector by takes voltage, too: seen as EMF that closes another loop, s Lq I/(lambda w0),
 // which gains with frequency up to the current control's and swings there. So w~ is filtered over Lq I/(lambda w0) at

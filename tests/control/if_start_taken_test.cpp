@@ -35,8 +35,8 @@ TEST(IfStart, TakesATurningRotorThroughStandstill) {
   }
 }
 
-// A vector whose own flux is half of the magnet's holds a rotor, too, that two thirds of its rated torque let swing: what
-// the vector takes by itself is no EMF.
+// A vector whose own flux is half of the magnet's holds a rotor, too, that two thirds of its rated torque let swing:
+// what the vector takes by itself is no EMF.
 TEST(IfStart, ALongVectorLetsNoRotorSwingAway) {
   Shaft shaft;
   shaft.m.rs = 0.268;
