@@ -5,7 +5,8 @@
 #define ANGLE_80_DEG 954437177L
 #define SHIFT_MAX_BAM ((int32_t)ANGLE_BAM_EIGHTH_TURN)
 #define MEAN_SHIFT 10u               // 100 ms
-#define TURNING_MOST_Q16 655360000L  // 10 kV
+#define SWING_SHIFT 7u               // 13 ms
+#define TURNING_MOST_Q16 655360000L  // 10 kV, more than any link has: the mean keeps room for its sign
 #define FILTER_LEAST 3u
 #define FILTER_MOST 8u
 #define AWAY_SHARE 16      // times least_q16, an eighth of the EMF at the last speed: twice that
@@ -29,9 +30,10 @@ bool if_start_design(if_start_config_t* c, const machine_model_t* m) {
   const int32_t accel_bpp = qc_mul_sat(torque_q16, m->accel_q12, 28);
   c->damping_periods = (int32_t)q_sqrt64((uint64_t)(ANGLE_BAM_PER_RAD / q_max(accel_bpp, 1)));
   c->filter_shift = filter_shift(c, m);
+  c->sure_bpp = q_div(2 * ANGLE_BAM_PER_RAD, c->damping_periods, 0);
   // w = v / lambda: rad per period of v over lambda/T, as binary angle.
   c->per_emf_q4 = q_div(ANGLE_BAM_PER_RAD, m->emf_q16, 20);
-  c->reactance_q48 = q_div(m->ld_q16, ANGLE_BAM_PER_RAD, 32);
+  c->reactance_q47 = q_div(m->ld_q16, ANGLE_BAM_PER_RAD, 31);
   c->resistance_q24 = m->nominal_rs_q24;
   c->least_q16 = q_div(c->speed_bpp / 8, c->per_emf_q4, 20);
   return q_in_range(c->damping_periods, 10, 10000);
@@ -97,14 +99,14 @@ static void renew_direction(if_start_t* s, const if_start_config_t* c) {
 }
 
 static dq_t emf_of(const if_start_t* s, dq_t voltage_q16) {
-  const dq_t emf_q16 = {qc_sub_sat(voltage_q16.d, s->own_q16.d), qc_sub_sat(voltage_q16.q, s->own_q16.q)};
+  const dq_t emf_q16 = {voltage_q16.d - s->own_q16.d, voltage_q16.q - s->own_q16.q};
   return emf_q16;
 }
 
 void if_start_renew(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
   renew_direction(s, c);
   s->own_q16.d = qc_mul_sat(c->resistance_q24, s->current_q20, 28);
-  const int32_t turning_q16 = qc_mul_sat(qc_mul_sat(c->reactance_q48, s->current_q20, 32), s->speed_bpp, 20);
+  const int32_t turning_q16 = qc_mul_sat(qc_mul_sat(c->reactance_q47, s->current_q20, 31), s->speed_bpp, 20);
   s->own_q16.q = q_limit(turning_q16, TURNING_MOST_Q16);
   if (!s->took_over || if_start_is_up(s, c)) return;
   const dq_t emf_q16 = emf_of(s, voltage_q16);
@@ -117,9 +119,11 @@ void if_start_renew(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16)
 static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
   const bool settling = s->agreed < 0;
   const uint16_t slow = settling ? SETTLE_SHIFT : MEAN_SHIFT;
+  const bool sure = !settling && !q_in_range(s->speed_bpp, -c->sure_bpp, c->sure_bpp);
+  const uint16_t swing = sure ? SWING_SHIFT : slow;
   const dq_t emf_q16 = emf_of(s, voltage_q16);
-  s->mean_q16.d = qc_follow(s->mean_q16.d, emf_q16.d, slow);
-  s->mean_q16.q = qc_follow(s->mean_q16.q, emf_q16.q, slow);
+  s->mean_q16.d = qc_follow(s->mean_q16.d, emf_q16.d, swing);
+  s->mean_q16.q = qc_follow(s->mean_q16.q, emf_q16.q, swing);
   const int32_t seen = q_mul_add_sat(s->per_emf_q4.d, emf_q16.d, s->per_emf_q4.q, emf_q16.q, 20);
   s->rotor_bpp = qc_follow(s->rotor_bpp, seen, c->filter_shift);
   s->mean_bpp = qc_follow(s->mean_bpp, settling ? seen : s->rotor_bpp, slow);

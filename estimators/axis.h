@@ -31,7 +31,8 @@ static inline void axis_begin(axis_t* s) {
   *s = none;
 }
 
-/// Takes the regression of one period, made at always the same angle; none once complete, for rounds to be whole.
+/// Takes the regression of one period, made at always the same angle; none once complete. Rounds are whole where no
+/// period in between has shown nothing: a direction more than the others would be a share of the saliency.
 void axis_add(axis_t* s, const regression_t* r);
 
 static inline bool axis_is_complete(const axis_t* s) { return s->count >= AXIS_PERIODS; }

@@ -186,8 +186,8 @@ static int32_t share_per_slot_q30(int32_t time_q8) {
 }
 
 // While the shaft is held the load is followed at once, five times as fast as at a crawl, and no step looked for. What
-// a window shows is then worth nearly what the sensors are: a fifth of the usual noise, twice that of their own. A
-// shaft that is held less stiffly needs it less sharply.
+// a window shows is then worth nearly what the sensors are: a fifth of the usual noise, twice that of their own. The
+// noise grows as 225 rad/s over the hold's own bandwidth, up to the usual.
 static void load_hold_observer(drive_config_t* c, deviation_observer_tuning_t* t) {
   const int32_t share_q24 = q_div(RELEASE_STEP_END_Q30 / 5, c->release_step_q30, 24);
   t->noise_q20 = q_min(qc_mul_sat(t->noise_q20, share_q24, 24), t->noise_q20);

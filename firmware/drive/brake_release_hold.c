@@ -4,8 +4,8 @@
 // it knows the load. For hold_time after the start of a standing shaft the torque therefore comes from a stiff loop,
 //   acceleration = wc^2 (theta* - theta^) + 2 wc (w* - w^) + load^
 // with theta* running at the speed reference and wc by the machine (config/config.c). Angle, speed and load are the
-// deviation observer's, told that the load changes fast and that its windows are worth all they measure
-// (config/config.c, hold_observer). A load step of its own it need not look for.
+// deviation observer's, told that the load changes fast and that its windows are worth all they measure, less where the
+// hold is softer (config/config.c, hold_observer). A load step of its own it need not look for.
 //
 // The current reference moves slowly enough for the voltage to leave the windows long.
 //

@@ -92,8 +92,8 @@ static start_phase_t starve(drive_t* d) {
   return hold_back(d);
 }
 
-// Twice as much with each try, while there is the saliency that the motion is read from; after one that the voltage was
-// too low for, half of that.
+// Twice as much with each try, while there is the saliency that the motion is read from; half of the last one where the
+// voltage was too low for that.
 static int32_t motion_current(const drive_start_t* s) {
   if (s->starved && s->motion.current_q20 > 0) return q_shr(s->motion.current_q20, 1);
   const int32_t most_q20 = q_min(drive.config.salient_q20, drive.config.values.current_limit);
@@ -105,6 +105,7 @@ static void begin_motion(drive_t* d) {
   if (s->phase != START_MOTION) s->tries = 0;
   const tracking_observer_t* const seen = &d->estimate.avv.observer;
   const int32_t current = motion_current(s);
+  // No more than before: more of the same.
   if (s->tries > 0u && current <= s->motion.current_q20) {
     polarity_again(&s->motion, seen->angle_bam, seen->speed_bpp);
   } else {

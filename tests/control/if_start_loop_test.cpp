@@ -29,7 +29,7 @@ class Start {
  public:
   Start(const Motor& motor, double load) : m_(motor), model_(model_of(motor)), load_(load) {
     turn_config_ = {
-        raw(kCurrent, 20), 1000, bpp(500.0 / 60.0 * kTurn * 4.0) / 10000, bpp(125.7), 5000, 0, 0, 0, 0, 0, 0};
+        raw(kCurrent, 20), 1000, bpp(500.0 / 60.0 * kTurn * 4.0) / 10000, bpp(125.7), 5000, 0, 0, 0, 0, 0, 0, 0};
     EXPECT_TRUE(if_start_design(&turn_config_, &model_));
     current_controller_design(&current_config_, &model_, &kDesign);
     current_controller_reset(&current_);

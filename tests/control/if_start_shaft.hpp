@@ -17,7 +17,7 @@ namespace stillspin::test {
 
 /// 8 A, 100 ms at rest, 500 rpm/s up to 300 rpm, 2 s of patience.
 inline if_start_config_t usual() {
-  return {raw(8.0, 20), 1000, bpp(500.0 / 60.0 * kTurn * 4.0) / 10000, bpp(125.7), 20000, 0, 0, 0, 0, 0, 0};
+  return {raw(8.0, 20), 1000, bpp(500.0 / 60.0 * kTurn * 4.0) / 10000, bpp(125.7), 20000, 0, 0, 0, 0, 0, 0, 0};
 }
 
 inline if_start_config_t designed(const Motor& m, if_start_config_t c) {

@@ -130,7 +130,7 @@ TEST(IfStart, WhatTheDesignMakesOfTheMachine) {
   const if_start_config_t c = designed(m, p);
   EXPECT_NEAR(real(c.least_q16, 16), 125.7 * m.flux / 8.0, 1e-4);
   EXPECT_NEAR(real(c.per_emf_q4, 4) / bpp(1.0 / m.flux), 1.0, 3e-6);
-  EXPECT_NEAR(real(c.reactance_q48, 48) * bpp(1.0) / m.ld, 1.0, 2e-5);
+  EXPECT_NEAR(real(c.reactance_q47, 47) * bpp(1.0) / m.ld, 1.0, 2e-5);
   // (w0 T)^2 = 1.5 p^2 lambda I / J T^2
   const double w0 = std::sqrt(1.5 * 16.0 * m.flux * 8.0 / m.inertia);
   EXPECT_NEAR(c.damping_periods, 1.0 / (w0 * kPeriod), 1.0);

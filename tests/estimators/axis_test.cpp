@@ -82,7 +82,7 @@ TEST(Axis, PeriodsWithoutTwoVectorsDoNotCount) {
 }
 
 // A direction that is seen once more than the others would be a share of the saliency, and of a curl.
-TEST(Axis, OnlyWholeRoundsCount) {
+TEST(Axis, WhatComesBehindTwoRoundsDoesNotCount) {
   const machine_model_t model = model_of(Motor{});
   Motor truth;
   truth.ld *= 0.7;

@@ -57,7 +57,7 @@ wiring_t judged(const Motor& truth, const Wires& wires, double theta, double lin
   avv_t avv = {};
   axis_t axis;
   axis_begin(&axis);
-  for (int n = 0; n < 100 && !axis_is_complete(&axis); ++n) {
+  for (int n = 0; n < AXIS_PERIODS + 5; ++n) {  // a start waits for a period for itself
     std::vector<Window> windows = alternating(truth, n, theta, 0.0, Vector{0, 0});
     for (Window& w : windows) {
       w.voltage = w.voltage * (link / kLink);

@@ -104,6 +104,7 @@ static void turn_vector(int32_t periods) {
                          0,
                          0,
                          0,
+                         0,
                          0};
   if_start_t s;
   if (!if_start_design(&c, &model)) return;

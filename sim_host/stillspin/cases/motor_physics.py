@@ -54,7 +54,7 @@ def _turned(motor: Described, share: float) -> Finding:
     linked = motor.plant("machine", "magnet_flux") / motor.plant("machine", "inductance_q")
     if current > linked:
         return Finding(
-            "start at rest", False, f"{words}; the vector is not damped: lower if_current below {linked:.3g} A"
+            "start at rest", False, f"{words}; the vector is hardly damped: lower if_current below {linked:.3g} A"
         )
     return Finding("start at rest", True, words)
 
