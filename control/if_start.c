@@ -30,7 +30,7 @@ bool if_start_design(if_start_config_t* c, const machine_model_t* m) {
   const int32_t accel_bpp = qc_mul_sat(torque_q16, m->accel_q12, 28);
   c->damping_periods = (int32_t)q_sqrt64((uint64_t)(ANGLE_BAM_PER_RAD / q_max(accel_bpp, 1)));
   c->filter_shift = filter_shift(c, m);
-  c->sure_bpp = q_div(2 * ANGLE_BAM_PER_RAD, c->damping_periods, 0);
+  c->follow_bpp = q_div(2 * ANGLE_BAM_PER_RAD, c->damping_periods, 0);
   // w = v / lambda: rad per period of v over lambda/T, as binary angle.
   c->per_emf_q4 = q_div(ANGLE_BAM_PER_RAD, m->emf_q16, 20);
   c->reactance_q47 = q_div(m->ld_q16, ANGLE_BAM_PER_RAD, 31);
@@ -119,8 +119,8 @@ void if_start_renew(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16)
 static void damp(if_start_t* s, const if_start_config_t* c, dq_t voltage_q16) {
   const bool settling = s->agreed < 0;
   const uint16_t slow = settling ? SETTLE_SHIFT : MEAN_SHIFT;
-  const bool sure = !settling && !q_in_range(s->speed_bpp, -c->sure_bpp, c->sure_bpp);
-  const uint16_t swing = sure ? SWING_SHIFT : slow;
+  const bool follows = !settling && !q_in_range(s->speed_bpp, -c->follow_bpp, c->follow_bpp);
+  const uint16_t swing = follows ? SWING_SHIFT : slow;
   const dq_t emf_q16 = emf_of(s, voltage_q16);
   s->mean_q16.d = qc_follow(s->mean_q16.d, emf_q16.d, swing);
   s->mean_q16.q = qc_follow(s->mean_q16.q, emf_q16.q, swing);

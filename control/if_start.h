@@ -9,8 +9,9 @@
 // what the drops make of it stands still, and counts for nothing. A direction that is off the EMF's by an angle closes
 // a loop over the lag with a gain of (w/w0) sin(angle): the component across the vector is off by the lag, and the
 // whole voltage by more, where the vector's flux is comparable in size with the magnet's. So the voltage w Ld I that
-// the vector takes by itself is taken off before; of an Lq that differs, (Lq - Ld) I sin^2(lag) is left. And the
-// direction follows a swing within 13 ms, where it is sure that this turns no rotor back: above 2 w0.
+// the vector takes by itself is taken off before; of an Lq that differs, (Lq - Ld) I sin^2(lag) is left. Above
+// 2 w0, where a swing does not reverse the rotor, the direction follows the swing within 13 ms; below, a rotor that
+// swings backward would be taken for one that turns forward.
 //
 // What the damping turns the vector by takes voltage, too: seen as EMF that closes another loop, s Lq I/(lambda w0),
 // which gains with frequency up to the current control's and swings there. So w~ is filtered over Lq I/(lambda w0) of
@@ -40,7 +41,7 @@ typedef struct {
   int32_t damping_periods;  // 1 / w0
   int32_t per_emf_q4;       // bpp per V of EMF
   int32_t reactance_q47;    // V across the vector per A and bpp of it
-  int32_t sure_bpp;         // 2 w0: beyond that no swing turns the rotor back
+  int32_t follow_bpp;       // 2 w0: from here on the direction follows a swing
   uint16_t filter_shift;    // of the rotor's speed: over 2^n periods
   int32_t resistance_q24;
   int32_t least_q16;  // mean EMF, V, below which its direction is not looked at

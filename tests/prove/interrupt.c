@@ -145,7 +145,7 @@ static void any_parts(void) {
   if_ramp_config.wait_periods = any_from(0, 100000L);
   if_ramp_config.damping_periods = any_from(1, 65536L);
   if_ramp_config.per_emf_q4 = any_from(0, INT32_MAX);
-  if_ramp_config.sure_bpp = any_from(0, INT32_MAX);
+  if_ramp_config.follow_bpp = any_from(0, INT32_MAX);
   if_ramp_config.reactance_q47 = any_from(0, INT32_MAX);
   if_ramp_config.filter_shift = (uint16_t)any_from(0, 15);
   if_ramp_config.resistance_q24 = any_from(16777L, 838860800L);
