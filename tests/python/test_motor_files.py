@@ -196,7 +196,7 @@ def test_the_vector_follows_from_the_nameplate():
     assert found["if_acceleration"] == pytest.approx(4.0 * swing / 5.0 * 30.0 / np.pi, abs=1.0)
     light = open_loop.following({**told, "inertia": 1e-4}, 50.0)
     assert light["if_acceleration"] == pytest.approx(light["if_speed"] / 0.6, abs=1.0)
-    assert found["spin_speed"] == pytest.approx(0.145 * 50.0 / 0.02 / 5.0 * 30.0 / np.pi, abs=2.0)
+    assert found["spin_speed"] == pytest.approx(0.135 * 50.0 / 0.02 / 5.0 * 30.0 / np.pi, abs=2.0)
     assert open_loop.following({**told, "inductance_q": 1.15}, 50.0) == {}
     assert found["adapt_time"] == 50.0
     assert found["speed_ramp"] == pytest.approx(0.1 * 1.5 * 5.0 * 0.02 * 9.52 / 1e-3 * 30.0 / np.pi, abs=1.0)

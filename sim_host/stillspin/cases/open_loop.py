@@ -13,6 +13,7 @@ SALIENCY_LEAST = 1.0 / 15.0
 """(Lq - Ld)/(Lq + Ld) below which nothing shows the axis at rest, as commissioning has it: Lq an eighth above Ld."""
 _EMF_SHARE = 0.10  # of the link's voltage, at the vector's last speed
 _SPIN_SHARE = 0.145  # the same in the spin, at most: the pulses alternate up to some 0.17
+_SPIN_EMF = 0.93  # of that: the ramp's current drops some over a winding whose L/R is short
 _SPIN_MOST = 0.6  # of speed_limit
 _FLUX_SHARE = 0.5  # L I of the vector, of the magnet's flux: beyond that it is damped less (control/if_start.h)
 _TORQUE_SHARE = 0.1  # of the vector's torque, for its own acceleration and that behind it
@@ -77,7 +78,7 @@ def following(told: Mapping[str, float], volts: float) -> dict[str, float]:
     if told.get("inertia"):
         swing = math.sqrt(pairs * torque / told["inertia"])
         slope = min(slope, rpm(_LAG * swing / _MEAN_TIME / pairs))
-    spin = min(max(spin_most(volts, flux, pairs), _SPIN[0]), _SPIN_MOST * told["speed_limit"], _SPIN[1])
+    spin = min(max(_SPIN_EMF * spin_most(volts, flux, pairs), _SPIN[0]), _SPIN_MOST * told["speed_limit"], _SPIN[1])
     return {
         "start_method": 1.0,
         "if_current": round(current, 2),
