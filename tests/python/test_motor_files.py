@@ -196,7 +196,14 @@ def test_the_vector_follows_from_the_nameplate():
     assert found["if_acceleration"] == pytest.approx(4.0 * swing / 5.0 * 30.0 / np.pi, abs=1.0)
     light = open_loop.following({**told, "inertia": 1e-4}, 50.0)
     assert light["if_acceleration"] == pytest.approx(light["if_speed"] / 0.6, abs=1.0)
-    assert found["spin_speed"] == pytest.approx(0.135 * 50.0 / 0.02 / 5.0 * 30.0 / np.pi, abs=2.0)
+    assert found["spin_speed"] == pytest.approx(0.93 * 0.145 * 50.0 / 0.02 / 5.0 * 30.0 / np.pi, abs=2.0)
+    assert "pulse_time" not in found
+    tight = open_loop.following({**told, "trip_current": told["current_limit"] + 1.0}, 50.0)
+    ripple = 2.0 / 3.0 * 50.0 / told["inductance_d"] * 1e3  # A/s
+    assert tight["pulse_time"] * 1e-6 * ripple == pytest.approx(1.0, rel=0.01)
+    assert tight["spin_speed"] == pytest.approx(found["spin_speed"] * tight["pulse_time"] / 42.0, abs=1.0)
+    least = open_loop.following({**told, "trip_current": told["current_limit"] + 0.1}, 50.0)
+    assert least["pulse_time"] == open_loop.PULSE_LEAST
     assert open_loop.following({**told, "inductance_q": 1.15}, 50.0) == {}
     assert found["adapt_time"] == 50.0
     assert found["speed_ramp"] == pytest.approx(0.1 * 1.5 * 5.0 * 0.02 * 9.52 / 1e-3 * 30.0 / np.pi, abs=1.0)

@@ -21,6 +21,9 @@ _RISE_TIME = 0.6  # s, to the last speed
 _LAG = 0.4  # rad that the damping turns the vector back while it gains speed, of the 45 degrees that it may
 _MEAN_TIME = 0.1  # s, of the mean that it takes off (control/if_start.h)
 _AGREES = 0.3  # s that the position source has to agree with the vector before it takes over
+_PULSE = 42.0  # us, the drive's default
+PULSE_LEAST = 24.0
+"""µs: the shortest pulses that windows fit into with the usual settle time."""
 _SPEEDS = (10.0, 6000.0)  # rpm, that the parameter takes
 _SPIN = (30.0, 20000.0)
 _RAMP_MOST = 3000.0  # rpm/s, the drive's default
@@ -52,6 +55,13 @@ def spin_most(volts: float, flux: float, pairs: float) -> float:
     return rpm(_SPIN_SHARE * volts / flux / pairs)
 
 
+def _pulse_time(told: Mapping[str, float], volts: float) -> float:
+    """The pulses, µs, whose ripple on top of the longest vector stays below the trip; the default where they do."""
+    ripple = 2.0 / 3.0 * volts / told["inductance_d"] * 1e-3  # A, of a pulse of 1 µs
+    enough = (told.get("trip_current", math.inf) - told["current_limit"]) / ripple
+    return min(max(round(enough, 1), PULSE_LEAST), _PULSE)
+
+
 def following(told: Mapping[str, float], volts: float) -> dict[str, float]:
     """The parameters of a start by a current vector, and of the spin behind it.
 
@@ -78,7 +88,12 @@ def following(told: Mapping[str, float], volts: float) -> dict[str, float]:
     if told.get("inertia"):
         swing = math.sqrt(pairs * torque / told["inertia"])
         slope = min(slope, rpm(_LAG * swing / _MEAN_TIME / pairs))
-    spin = min(max(_SPIN_EMF * spin_most(volts, flux, pairs), _SPIN[0]), _SPIN_MOST * told["speed_limit"], _SPIN[1])
+    pulse = told.get("pulse_time", _pulse_time(told, volts))
+    spin = min(
+        max(pulse / _PULSE * _SPIN_EMF * spin_most(volts, flux, pairs), _SPIN[0]),
+        _SPIN_MOST * told["speed_limit"],
+        _SPIN[1],
+    )
     return {
         "start_method": 1.0,
         "if_current": round(current, 2),
@@ -87,6 +102,7 @@ def following(told: Mapping[str, float], volts: float) -> dict[str, float]:
         "spin_speed": float(round(spin)),
         "speed_ramp": float(max(round(ramp), 10)),
         "adapt_time": _ADAPT_TIME,
+        **({"pulse_time": pulse} if pulse < _PULSE else {}),
     }
 
 

@@ -30,7 +30,6 @@ _SWING_TESTED = 2.8  # where a segment of the polarity test is the shortest
 _LOOP_END = 10400.0  # rad/s times three half periods and the divider's (firmware/config/rules.c)
 _LEVELS_ABOVE = 2.2  # times the ripple, and a tenth to spare
 _TRIP_SHARE = 1.5  # of which the ripple has the rest
-_PULSE_LEAST = 24.0  # us, with the usual settle time
 _LEFT = 1.0 / (1.0 + 0.5**2)  # of Lqq at rated current (sim_host/plant/machine.cpp)
 _TURNED = math.tan(2.0 * math.radians(5.0))  # of the axis there
 _FRICTION = 1.0 / 32.0  # of the rated torque, at the base speed
@@ -322,7 +321,7 @@ def _pulse_time(asked: _Asked, name: str) -> float:
     most = min(max(min(limit, held), weakening), trip / _TRIP_SHARE)
     ripple = 2.0 / 3.0 * size.volts / size.inductance_d * 1e-6  # A, of a pulse of 1 µs
     enough = most / (_LEVELS_ABOVE * ripple)
-    return min(max(enough, _PULSE_LEAST), default)
+    return min(max(enough, open_loop.PULSE_LEAST), default)
 
 
 def _synchronism_floor(asked: _Asked, name: str) -> float:
