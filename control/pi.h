@@ -17,8 +17,8 @@
 
 #include "hal/qmath/qmath.h"
 
-#define PI_PART_BITS 30u  // either part, V Q20
-#define PI_FEED_BITS 30u  // what is fed forward, V Q16
+#define PI_PART_BITS 30u          // either part, V Q20
+#define PI_FEED_FORWARD_BITS 30u  // what is fed forward, V Q16
 
 typedef struct {
   int32_t kp_q20;       // V per A
@@ -33,10 +33,12 @@ typedef struct {
 static inline void pi_reset(pi_state_t* s) { s->integral_q20 = 0; }
 
 /// One step: error in A Q20, what is fed forward in V Q16; returns the output, V Q16, within 2^bits, bits up to 30.
-static inline int32_t pi_step(pi_state_t* s, const pi_config_t* c, int32_t error_q20, int32_t feed_q16, unsigned bits) {
+static inline int32_t pi_step(pi_state_t* s, const pi_config_t* c, int32_t error_q20, int32_t feed_forward_q16,
+                              unsigned bits) {
   const int32_t part_q20 = q_sat_bits(q_product(error_q20, c->kp_q20), 20, PI_PART_BITS);
   s->integral_q20 = q_within_bits(s->integral_q20 + q_mul_hi(part_q20, c->corner_q32), PI_PART_BITS);
-  return q_within_bits(q_shr(s->integral_q20 + part_q20, 4) + q_within_bits(feed_q16, PI_FEED_BITS), bits);
+  return q_within_bits(q_shr(s->integral_q20 + part_q20, 4) + q_within_bits(feed_forward_q16, PI_FEED_FORWARD_BITS),
+                       bits);
 }
 
 /// Tells the controller what became of its output: `excess` = asked minus realised, V Q16.

@@ -39,6 +39,8 @@ from row_lists import ROOT, Lists, rows_of
 EDITIONS, FEATURE = "firmware/editions", "feature.toml"
 PARAMETERS, SIGNALS, FAULTS, REQUESTS = "parameter_list.h", "signal_list.h", "fault_list.h", "request_list.h"
 COMMANDS = "command_list.h"
+SOURCES, SOURCE = "position_sources", "position_source"  # a table, and the parameter that it is looked up by
+_MAXIMUM = 6  # place of a parameter's in its row
 KINDS, KIND = "firmware/text/catalogue.h", re.compile(r"CATALOGUE_([A-Z]+) = (\d+)")
 TEXTS, CMAKE = "packed_text_table.c", "composed.cmake"
 OF_COMMAND = 0x100  # REQUEST_OF_COMMAND, firmware/link/request_rows.h
@@ -188,6 +190,8 @@ def table_text(name: str, edition: Edition, root: Path) -> str:
     table = TABLES[name]
     if name == "commands":
         table = replace(table, least=len(edition.commands(root)))
+    if name == SOURCES:
+        table = replace(table, least=values_of(SOURCE, edition, root))
     rows: list[tuple[int, str]] = []
     headers = {table.header}
     for feature, own in edition.rows(name, root):
@@ -200,6 +204,38 @@ def table_text(name: str, edition: Edition, root: Path) -> str:
     lines = [f"// Made by toolchain/compose.py: {name} of the edition {edition.name}.", "", "#include <stddef.h>", ""]
     lines += [f'#include "{header}"' for header in sorted(headers)]
     return "\n".join([*lines, "", table.text(name, rows)])
+
+
+def values_of(parameter: str, edition: Edition, root: Path) -> int:
+    """How many values a parameter may have that goes from 0 on; 0 where there is none of that name."""
+    rows = edition.lists(root).rows(PARAMETERS, "PARAMETER")
+    return next((int(row[_MAXIMUM]) + 1 for row in rows if row[1] == parameter), 0)
+
+
+def variants_text(edition: Edition, root: Path) -> str:
+    """The C file with which of its places a position source has there (firmware/interfaces/source.h).
+
+    Nothing where none has more than one.
+    """
+    by_place: dict[int, int] = {}
+    for feature, _ in edition.rows(SOURCES, root):
+        for places in feature.rows[SOURCES].values():
+            if isinstance(places, list):
+                by_place |= {place: k for k, place in enumerate(places, 1)}
+    if not by_place:
+        return ""
+    count = max(values_of(SOURCE, edition, root), *(place + 1 for place in by_place))
+    cells = ", ".join(str(by_place.get(place, 0)) for place in range(count))
+    return "\n".join(
+        [
+            f"// Made by toolchain/compose.py: the position sources of the edition {edition.name}.",
+            "",
+            '#include "firmware/interfaces/source.h"',
+            "",
+            f"const int16_t position_source_variants[] = {{{cells}}};",
+            "",
+        ]
+    )
 
 
 def header_of(feature: Feature, header: str, root: Path) -> str:
@@ -318,6 +354,7 @@ def made(edition: Edition, root: Path = ROOT) -> dict[str, str]:
         TEXTS: pack_text.pack(kept, sum(1 for name in texts if pack_text.NAME.match(name))),
         "left_out.c": left_out_text(edition, root),
         "signal_looks.c": looks_text(edition, root),
+        **({"source_variants.c": variants} if (variants := variants_text(edition, root)) else {}),
         **{f"{name}.c": table_text(name, edition, root) for name in TABLES},
     }
 

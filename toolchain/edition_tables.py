@@ -32,7 +32,7 @@ class Table:
 
 SERVICE, STATUS = "firmware/interfaces/service.h", "firmware/api/status.h"
 TABLES = {
-    "position_sources": Table("const position_source_t", "firmware/interfaces/source.h", "places", 9, prefix=""),
+    "position_sources": Table("const position_source_t", "firmware/interfaces/source.h", "places", prefix=""),
     "drive_states": Table("const state_t", "firmware/interfaces/state.h", "places", 8, prefix=""),
     "start_phases": Table("const phase_t", "firmware/start/phases.h", "places", 9, prefix=""),
     "phase_control": Table("const phase_control_t", "firmware/interfaces/phase_control.h", "one"),

@@ -73,7 +73,7 @@ PARTS = {
             *(f"firmware/drive/{name}.c" for name in ("control_interrupt", "schedule", "sampling", "protection")),
             *(
                 f"firmware/drive/{name}.c"
-                for name in ("sequence", "hand_over", "speed", "reset", "brake_release_hold", "polarity_watch")
+                for name in ("sequence", "bumpless_transfer", "speed", "reset", "brake_release_hold", "polarity_watch")
             ),
             *("firmware/board/*.c", "firmware/commissioning/*.c"),
         ),

@@ -58,9 +58,9 @@ static int32_t braking_q20(const drive_t* d) {
 void commissioning_hold(drive_t* d) {
   const bool uniform = commissioning.uniform;
   const int32_t limit = q_shr(d->config.values.current_limit, 2);
-  const int32_t wanted = q_limit(uniform ? braking_q20(d) : holding_q20(d), limit);
+  const int32_t reference = q_limit(uniform ? braking_q20(d) : holding_q20(d), limit);
   int32_t* const current = &d->control.references.current_q20.q;
-  *current = uniform ? q_follow_near(*current, wanted, 6) : wanted;
+  *current = uniform ? q_follow_near(*current, reference, 6) : reference;
 }
 
 bool commissioning_align(drive_t* d) {

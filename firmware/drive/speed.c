@@ -67,8 +67,8 @@ static int32_t usable_current(const drive_t* d) {
   if (salient_q20 >= limit_q20) return limit_q20;
   const int32_t even_bpp = q_clamp(qc_mul_sat(d->samples.link_q16, d->config.salient_bpp_q4, 20), 1, FASTEST_EVEN_BPP);
   const int32_t freed_bpp = qc_mul_sat(even_bpp, d->config.freed_by_q8, 8);
-  const int32_t told_q30 = rise_q30(qc_abs_sat(d->estimate.selected.speed_bpp), even_bpp, freed_bpp);
-  return q_mix(salient_q20, limit_q20, told_q30, 30);
+  const int32_t share_q30 = rise_q30(qc_abs_sat(d->estimate.selected.speed_bpp), even_bpp, freed_bpp);
+  return q_mix(salient_q20, limit_q20, share_q30, 30);
 }
 
 int32_t drive_current_headroom(const drive_t* d) {

@@ -48,7 +48,7 @@ void drive_control_current(const drive_t* d, drive_control_t* c);               
 void drive_modulate(const drive_t* d, drive_modulation_t* m, drive_control_t* c);     // modulation.c
 void drive_modulation_reset(drive_modulation_t* m);
 
-/// Lets the position sources and the speed control start from this angle and speed (drive/hand_over.c).
+/// Lets the position sources and the speed control start from this angle and speed (drive/bumpless_transfer.c).
 void drive_bumpless_transfer(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 
 /// Torque current that the limit leaves beside the reference of i_d, A.

@@ -133,9 +133,13 @@ static int32_t to_codes_q8(const drive_t* d, int32_t amps_q20) {
   return q_limit(q_mul_sat(amps_q20, d->config.codes_per_amp_q16, 28), CODES_END_Q8);
 }
 
-static abc_t reference_codes_q8(const drive_t* d, uint32_t angle_bam) {
+typedef struct {
+  int32_t a, b;
+} codes_t;
+
+static codes_t reference_codes_q8(const drive_t* d, uint32_t angle_bam) {
   const abc_t i = frame_inverse_clarke(frame_fixed(d->control.references.current_q20, angle_bam));
-  const abc_t codes = {to_codes_q8(d, i.a), to_codes_q8(d, i.b), to_codes_q8(d, i.c)};
+  const codes_t codes = {to_codes_q8(d, i.a), to_codes_q8(d, i.b)};
   return codes;
 }
 
@@ -146,8 +150,8 @@ static void refer(const drive_t* d) {
   const int32_t speed = d->estimate.selected.speed_bpp;
   const int32_t passed_q30 = q_min((int32_t)hal_pwm_period_tick(), HAL_PWM_PERIOD_TICKS) * 107374L;
   const uint32_t angle = d->estimate.selected.angle_bam + (uint32_t)q_mul(speed, passed_q30, 30);
-  const abc_t now = reference_codes_q8(d, angle);
-  const abc_t then = reference_codes_q8(d, angle + (uint32_t)speed);
+  const codes_t now = reference_codes_q8(d, angle);
+  const codes_t then = reference_codes_q8(d, angle + (uint32_t)speed);
   const int32_t band_q8 = to_codes_q8(d, h->band_q20);
   const uint16_t state = hal_irq_disable();
   h->reference_a_q8 = now.a;

@@ -49,4 +49,7 @@ typedef struct {
 /// By the values of the parameter position_source (editions/).
 extern const position_source_t* const position_sources[];
 
+/// By the same: which of its values a source has there, from 1; 0 where it has but one.
+extern const int16_t position_source_variants[];
+
 #endif

@@ -12,7 +12,7 @@
 #include "firmware/store/writer.h"
 
 // feature_status.store_work
-enum { WORK_NONE, WORK_LOAD, WORK_SURVEY, WORK_WRITE };
+enum { WORK_NONE, WORK_LOAD, WORK_SCAN, WORK_WRITE };
 
 static struct {
   uint16_t state;    // store_state_t
@@ -33,7 +33,7 @@ uint16_t store_progress(void) {
   switch (feature_status.store_work) {
     case WORK_LOAD:
       return scan_progress();
-    case WORK_SURVEY:
+    case WORK_SCAN:
       return (uint16_t)(scan_progress() / 10u);
     case WORK_WRITE:
       return (uint16_t)(10u + 9u * writer_progress() / 10u);
@@ -85,7 +85,7 @@ bool store_load(void) {
 
 bool store_save(void) {
   if (store_is_busy()) return false;
-  begin(WORK_SURVEY, STORE_SAVING);
+  begin(WORK_SCAN, STORE_SAVING);
   values_copy();
   return true;
 }
@@ -170,7 +170,7 @@ void store_service(void) {
     case WORK_LOAD:
       load();
       break;
-    case WORK_SURVEY:
+    case WORK_SCAN:
       scan();
       break;
     case WORK_WRITE:

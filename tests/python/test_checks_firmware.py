@@ -53,6 +53,7 @@ VALUES = "enum {\n  POSITION_ENCODER = 0,  // measured\n  POSITION_AVV = 3\n};\n
         "void f(void) { switch (parameters . position_source) { default: break; } }",
         "int32_t f(void) { const int32_t source = parameters.position_source; return source; }",
         "bool f(int32_t source) { return source != POSITION_AVV; }",
+        "bool f(const parameters_t* p) { return kinds[p->position_source] == 2; }",
         "bool f(void) { return parameter_get(ID_position_source) != 0; }",
         "bool f(const drive_t* d) { return d->source == &avv_source; }",
         "bool f(const drive_t* d) { return d->source != position_sources[POSITION_AVV]; }",
@@ -72,6 +73,7 @@ def test_question_which_source_is_chosen_is_caught(tmp_path: Path, line: str) ->
     "line",
     [
         "uint16_t f(void) { return position_sources[parameters.position_source]->traits; }",
+        "int16_t f(void) { return position_source_variants[parameters.position_source]; }",
         "estimator_output_t f(drive_t* d) { return position_sources[POSITION_AVV]->step(d, NULL); }",
         "bool f(const drive_t* d) { return (d->source->traits & SOURCE_MEASURES) != 0u; }",
         "bool f(void) {\n  const void* s = position_sources[POSITION_AVV];\n  return NULL != s && s != NULL;\n}",

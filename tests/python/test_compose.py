@@ -123,6 +123,20 @@ def test_what_is_left_out_leaves_its_place_empty() -> None:
     assert "edition_phase_control = NULL;" in compose.table_text("phase_control", compose.read_edition("minimal"), ROOT)
 
 
+def test_every_value_of_position_source_has_its_place_in_every_edition() -> None:
+    for name in ("lab", "minimal"):
+        edition = compose.read_edition(name)
+        places = rows(compose.table_text("position_sources", edition, ROOT))
+        assert len(places) == compose.values_of("position_source", edition, ROOT) == 9
+    assert compose.values_of("no_parameter", edition, ROOT) == 0
+
+
+def test_a_source_with_several_values_knows_which_of_them_it_has() -> None:
+    lab, minimal = (compose.made(compose.read_edition(name), ROOT) for name in ("lab", "minimal"))
+    assert "position_source_variants[] = {0, 0, 0, 0, 0, 1, 2, 3, 4};" in lab["source_variants.c"]
+    assert "source_variants.c" not in minimal
+
+
 def test_texts_of_what_is_left_out_are_not_packed_but_for_names() -> None:
     needless = compose.needless_texts(compose.read_edition("minimal"), ROOT)
     gone = {

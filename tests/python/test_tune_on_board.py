@@ -151,7 +151,7 @@ def test_what_the_edition_of_a_drive_leaves_out_has_no_panel(tmp_path, monkeypat
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
     with opened(page, edition="minimal"):
         assert page.inner_text("#edition") == (
-            "Edition minimal of the firmware leaves out: scope, commissioning, store, CAN bus."
+            "Edition minimal of the firmware leaves out: scope, commissioning, store, CAN bus, look."
         )
         tabs = page.locator("[role=tab]:visible")
         assert tabs.all_inner_texts() == ["Live", "Parameters", "Faults"]
@@ -161,6 +161,8 @@ def test_what_the_edition_of_a_drive_leaves_out_has_no_panel(tmp_path, monkeypat
         assert page.inner_text("#store-note") == "Changes are in effect; they last until the drive is switched off."
         assert not page.is_visible("#save")
         assert not page.is_visible("#store")
+        look = page.locator("#look")
+        assert look.get_attribute("data-part") == "look" and look.evaluate("button => button.hidden")
         assert page.locator("[data-name=can_node]").count() == 0
         assert "STORE" not in page.inner_text("aside").upper().replace(page.inner_text("#edition").upper(), "")
     with opened(page, edition="lab"):

@@ -2,7 +2,7 @@
 
 ``position_source``, and the names of its values, stand in firmware/ as what a table is looked up by, and nowhere else;
 the row that the table gives is compared with no other, by whatever name it has been given in a function; whether there
-is one may be asked. The files of OWN make the table and know their own rows.
+is one may be asked.
 """
 
 import re
@@ -13,12 +13,9 @@ from checks import Finding
 from checks.calls import code
 
 TABLE = "position_sources"
-OWN = {
-    "firmware/dictionary/parameters.h": "names the values",
-    "firmware/sources/flux/flux.c": "its four methods are four rows that differ in their number",
-}
+NAMES = "firmware/dictionary/parameters.h"  # of the values
 _ENUM = re.compile(r"enum\s*\{([^}]*\bPOSITION_ENCODER\b[^}]*)\}")
-_LOOKED_UP = re.compile(rf"\b{TABLE}\s*\[[^\]]*\]")
+_LOOKED_UP = re.compile(rf"\b(?:{TABLE}|position_source_variants)\s*\[[^\]]*\]")
 _ROW = r"&\s*\w+_source\b"
 _COMPARED = re.compile(rf"[=!]=\s*(?:{_ROW}|{TABLE}\b)|(?:{_ROW}|{TABLE}\s*\[[^\]]*\])\s*[=!]=")
 _NAMED = r"((?:\w+(?:->|\.))*\w+)\s*=\s*(?:{})"  # an expression that such a row is assigned to
@@ -46,7 +43,7 @@ def _compared_by_name(text: str) -> Iterator[int]:
 
 
 def _values(root: Path) -> list[str]:
-    enum = _ENUM.search(code(path)) if (path := root / "firmware/dictionary/parameters.h").exists() else None
+    enum = _ENUM.search(code(path)) if (path := root / NAMES).exists() else None
     return re.findall(r"\b(POSITION_\w+)", enum[1]) if enum else []
 
 
@@ -65,7 +62,7 @@ def check(root: Path) -> list[Finding]:
     findings = []
     for path in sorted((root / "firmware").rglob("*.[ch]")):
         source = path.relative_to(root).as_posix()
-        if source in OWN:
+        if source == NAMES:
             continue
         text = code(path)
         for line in sorted({text.count("\n", 0, at) + 1 for at in _asked(text, values)}):

@@ -100,12 +100,12 @@ WRITERS: dict[str, tuple[str, ...]] = {
     "control.speed": (
         "firmware/drive/speed.c",
         "firmware/drive/inertia.c",
-        "firmware/drive/hand_over.c",
+        "firmware/drive/bumpless_transfer.c",
         "firmware/start/",
         _FRESH,
     ),
     "control.weakening": ("firmware/drive/speed.c", "firmware/start/"),
-    "control.ramp": ("firmware/drive/speed.c", "firmware/drive/hand_over.c", "firmware/start/"),
+    "control.ramp": ("firmware/drive/speed.c", "firmware/drive/bumpless_transfer.c", "firmware/start/"),
     "control.position_hold": ("firmware/drive/speed.c", "firmware/start/start.c"),
     "control.current": (
         "firmware/drive/current.c",

@@ -38,9 +38,9 @@ void flux_reset(void) {
   flux_observer.machine.psi_q16 = 0;
 }
 
-// That has the shaft, or looks on; below zero without one.
+// That has the shaft, or looks on; below zero without one. No other source has variants.
 static int32_t method(void) {
-  return q_max(parameters.position_source - POSITION_FLUX_CONV, parameters.flux_beside - 1);
+  return q_max(position_source_variants[parameters.position_source], parameters.flux_beside) - 1;
 }
 
 // Half of the band is for what the ripple at an edge is wrong by, and the flux has centred pulses without any.

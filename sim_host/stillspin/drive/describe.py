@@ -133,6 +133,7 @@ _PARTS = {
     Words.COMMISSIONING: "commissioning",
     Words.STORE: "store",
     Words.CAN: "CAN bus",
+    Words.LOOK: "look",
 }
 """Parts of the firmware that have words of their own."""
 
