@@ -18,6 +18,7 @@
 
 #include "estimators/inverse_inductance_tensor.h"
 #include "firmware/commissioning/outcome.h"
+#include "firmware/interfaces/config_part.h"
 #include "firmware/interfaces/state.h"
 #include "svpwm/dead_time.h"
 
@@ -92,14 +93,17 @@ typedef struct {
   spin_sums_t ramp[SPIN_RAMPS];
 } spin_t;
 
+/// Samples settle as long as it wants, or there are no pulses but those that the voltage wants.
+typedef enum { SAMPLING_USUAL = 0, SAMPLING_LONGER = 1, SAMPLING_AT_ZERO = 2 } commissioning_sampling_t;
+
 typedef struct {
   commissioning_phase_t phase;
   commissioning_outcome_t outcome;
-  int32_t tick;           // periods in this phase
-  bool predicting;        // the angle runs ahead on the torque alone
-  bool solve_motion;      // the background level owes acceleration and torque constant from the spin
-  bool evaluate;          // the sums are complete and the gates are off
-  bool longer;            // samples settle as long as it wants, until the parameters are loaded again
+  int32_t tick;       // periods in this phase
+  bool predicting;    // the angle runs ahead on the torque alone
+  bool solve_motion;  // the background level owes acceleration and torque constant from the spin
+  bool evaluate;      // the sums are complete and the gates are off
+  commissioning_sampling_t sampling;
   bool uniform;           // no axis at rest: the shaft follows the current, and is not held
   int32_t damping_q30;    // of the hold, per period
   uint32_t target_bam;    // where the shaft is held
@@ -121,5 +125,8 @@ extern commissioning_t commissioning;
 void commissioning_reset(void);
 
 extern const state_t commissioning_state;
+
+/// How it samples meanwhile.
+extern const config_part_t commissioning_part;
 
 #endif

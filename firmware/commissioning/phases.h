@@ -16,8 +16,8 @@ int32_t map_level_q20(const map_t* m, uint16_t level);    // its current, A
 bool commissioning_spin(drive_t* d);                      // commissioning/spin.c
 void commissioning_hold(drive_t* d);                      // keeps the shaft at target_bam by i_q
 void commissioning_set_d(drive_t* d, int32_t level_q20);  // i_d reference, with a limited slope
-/// No pulses but those that the voltage wants, until the parameters are loaded again.
-void commissioning_release_pulses(void);
+/// It samples so from a few periods later on.
+void commissioning_sample(commissioning_sampling_t how);
 /// A pair of windows at rest and without current, for the inductances there.
 void commissioning_add_still(const drive_t* d);
 /// Angle and speed while the shaft is held (commissioning/hold.c).

@@ -9,7 +9,6 @@
 #include "firmware/mode/interlock.h"
 #include "firmware/mode/mode.h"
 #include "firmware/start/start.h"
-#include "hal/hal_irq.h"
 #include "hal/hal_replay.h"
 #include "hal/qmath/qcall.h"
 
@@ -21,7 +20,10 @@ commissioning_t commissioning;
 static commissioning_report_t report;
 static const state_request_t commission = {DRIVE_COMMISSION, DRIVE_READY};
 
-void commissioning_reset(void) { clear(&commissioning, sizeof commissioning); }
+void commissioning_reset(void) {
+  clear(&commissioning, sizeof commissioning);
+  report.count = 0;
+}
 
 static bool at_once(drive_t* d) {
   (void)d;
@@ -33,7 +35,7 @@ static bool (*const phases[])(drive_t* d) = {at_once, commissioning_align, commi
                                              commissioning_map};
 
 // Per mille of the time of the whole at which each begins, as motor A takes it.
-static const int16_t begins[] = {0, 0, 8, 173, 242, 1000};
+static const int16_t begins[] = {0, 0, 8, 173, 242, 1000, 1000};
 
 static void commissioning_begin(drive_t* d, drive_state_t behind) {
   (void)behind;  // it ends in READY
@@ -45,6 +47,7 @@ static void commissioning_begin(drive_t* d, drive_state_t behind) {
   c->solve_motion = false;
   c->predicting = false;
   c->uniform = false;
+  report.count = 0;
   start_state.begin(d, DRIVE_COMMISSION);
 }
 
@@ -103,16 +106,16 @@ static void settle(const drive_t* d) {
   if (!c->evaluate) return;
   commissioning_judge(c, &report);
   c->outcome = commissioning_use(&report);
-  drive_parameters_changed();  // of what was written, and without that of the longer settling
+  drive_parameters_changed();
   c->evaluate = false;
 }
 
 // Also of one that was asked for and did not begin.
 static void put_back(void) {
   commissioning_t* const c = &commissioning;
-  if (!c->longer || drive.request.begin == &commission || c->outcome == COMMISSIONING_RUNNING) return;
-  c->longer = false;
-  drive_parameters_changed();
+  if (c->sampling == SAMPLING_USUAL || drive.request.begin == &commission || c->outcome == COMMISSIONING_RUNNING)
+    return;
+  commissioning_sample(SAMPLING_USUAL);
 }
 
 void commissioning_service(const drive_t* d) {
@@ -135,28 +138,39 @@ static void settle_longer(modulator_config_t* m) {
   c->settle_ticks = (int16_t)q_min(c->settle_ticks + LONGER_TICKS, q_max(c->settle_ticks, most));
 }
 
-// With no alternating layout and no window to extend a vector for, there are the voltage's own edges only.
-void commissioning_release_pulses(void) {
-  drive.config.modulator.pulse_ticks = 0;
-  drive.config.modulator.extended.window_max_ticks = 0;
+static packed_text_t make(drive_config_t* c) {
+  if (commissioning.sampling == SAMPLING_USUAL) return PACKED_NONE;
+  settle_longer(&c->modulator);
+  if (commissioning.sampling == SAMPLING_AT_ZERO) {  // no alternating layout, no window to extend a vector for
+    c->modulator.pulse_ticks = 0;
+    c->modulator.extended.window_max_ticks = 0;
+  }
+  return PACKED_NONE;
 }
 
-// In one, behind what was changed before: it begins with the next interrupt, or not at all.
+static void take(void) {}
+
+const config_part_t commissioning_part = {make, take, NULL};
+
+void commissioning_sample(commissioning_sampling_t how) {
+  commissioning.sampling = how;
+  drive_parameters_changed();
+}
+
+// It begins with the next interrupt, behind what was changed before, or not at all.
 void drive_command_commission(void) {
+  commissioning_sample(SAMPLING_LONGER);
   drive_exchange();
-  const uint16_t state = hal_irq_disable();
-  if (!commissioning.longer) settle_longer(&drive.config.modulator);
-  commissioning.longer = true;
   drive.request.begin = &commission;
-  hal_irq_restore(state);
 }
 
 commissioning_outcome_t drive_commissioning_outcome(void) { return commissioning.outcome; }
 
 // Heat sinks may take minutes, and one whose fan stands takes for ever: who waits is told.
 static bool cools(const commissioning_t* c) {
-  const bool rests = (c->phase == COMMISSIONING_STAIRCASE) ? c->staircase.tick == 0 : c->map.pause;
-  return interlock_is_warm() && rests && (c->phase == COMMISSIONING_STAIRCASE || c->phase == COMMISSIONING_MAP);
+  const bool rests =
+      (c->phase == COMMISSIONING_STAIRCASE) ? c->staircase.tick == 0 : c->phase == COMMISSIONING_MAP && c->map.pause;
+  return rests && interlock_is_warm();
 }
 
 commissioning_phase_t drive_commissioning_phase(void) {
@@ -174,15 +188,11 @@ static int32_t within_phase(const commissioning_t* c) {
 int32_t drive_commissioning_progress(void) {
   const commissioning_t* const c = &commissioning;
   const int16_t* const here = &begins[c->phase];
-  if (c->phase == COMMISSIONING_EVALUATE) return here[0];
   return here[0] + within_phase(c) * (here[1] - here[0]) / 1000;
 }
 
-uint16_t drive_commissioning_count(void) {
-  const commissioning_outcome_t outcome = commissioning.outcome;
-  return (outcome == COMMISSIONING_DONE || outcome == COMMISSIONING_PARTLY) ? report.count : 0u;
-}
+uint16_t drive_commissioning_count(void) { return report.count; }
 
 const commissioning_result_t* drive_commissioning_result(uint16_t index) {
-  return (index < drive_commissioning_count()) ? &report.list[index] : NULL;
+  return (index < report.count) ? &report.list[index] : NULL;
 }

@@ -92,7 +92,7 @@ static void place(const drive_t* d) {
   const int32_t largest = most - q_shr(most, 3);
   s->at_zero = commissioning.uniform && ripple / 10 * 24 > largest;
   if (s->at_zero) {
-    commissioning_release_pulses();
+    commissioning_sample(SAMPLING_AT_ZERO);
     ripple = 0;
   } else if (ripple > q_shr(most, 1)) {
     sign = 0;
@@ -177,7 +177,7 @@ bool commissioning_climb(drive_t* d) {
   if (s->index >= STAIRCASE_LEVELS) {
     commissioning_set_d(d, 0);
     if (d->control.references.current_q20.d != 0) return false;
-    if (s->at_zero && s->tick == 0) drive_parameters_changed();  // the pulses of before
+    if (s->at_zero && s->tick == 0) commissioning_sample(SAMPLING_LONGER);
     s->tick = qc_add_sat(s->tick, 1);
     commissioning_add_still(d);
     return s->tick > SETTLE_PERIODS + 1;

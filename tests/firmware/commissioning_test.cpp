@@ -222,15 +222,15 @@ TEST_F(Commissioning, ItsEndRestoresTheConfigurationWhateverWasFound) {
 }
 
 TEST_F(Commissioning, TheLongerSettlingStaysForOneThatWasAskedFor) {
-  commissioning.longer = false;
+  commissioning.sampling = SAMPLING_USUAL;
   drive_command_commission();
   inside::withdraw_reload();
   commissioning_service(&drive);
-  EXPECT_TRUE(commissioning.longer);
+  EXPECT_EQ(commissioning.sampling, SAMPLING_LONGER);
   EXPECT_FALSE(inside::reload_requested());
   inside::withdraw_state();  // it did not begin
   commissioning_service(&drive);
-  EXPECT_FALSE(commissioning.longer);
+  EXPECT_EQ(commissioning.sampling, SAMPLING_USUAL);
   EXPECT_TRUE(inside::reload_requested());
 }
 

@@ -33,15 +33,20 @@ class CommissioningAtZero : public Phases {
 TEST_F(CommissioningAtZero, AShortTimeConstantHasNoPulses) {
   const std::int16_t pulse = inside::config().modulator.pulse_ticks;
   for (const double periods : {8.0, 7.4, 7.2, 2.0}) {
-    inside::config().modulator.pulse_ticks = pulse;
-    inside::config().modulator.extended.window_max_ticks = 3000;
+    commissioning.sampling = SAMPLING_LONGER;
     begin(periods);
     const double most = kLink / 4.0 * pulse / 1e4 * periods * 0.2;
     const double ripple = 2.4 * 8.0 / 3.0 / periods;  // of the largest current
     const bool zero = ripple > 0.875;
     EXPECT_EQ(stairs().at_zero, zero) << periods;
-    EXPECT_EQ(inside::config().modulator.pulse_ticks, zero ? 0 : pulse) << periods;
-    EXPECT_EQ(inside::config().modulator.extended.window_max_ticks, zero ? 0 : 3000) << periods;
+    EXPECT_EQ(inside::reload_requested(), zero) << periods;
+    drive_config_t made = inside::config();
+    made.modulator.extended.window_max_ticks = 3000;
+    EXPECT_EQ(commissioning_part.make(&made), PACKED_NONE);
+    EXPECT_EQ(made.modulator.pulse_ticks, zero ? 0 : pulse) << periods;
+    EXPECT_EQ(made.modulator.extended.window_max_ticks, zero ? 0 : 3000) << periods;
+    EXPECT_EQ(inside::config().modulator.pulse_ticks, pulse) << "the exchange alone changes what is in use";
+    inside::withdraw_reload();
     EXPECT_NEAR(level(13), most, 0.01 * most) << periods;
     EXPECT_NEAR(level(0), (zero ? 0.4 : ripple) * most, 0.01 * most) << periods;
   }

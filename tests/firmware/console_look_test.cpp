@@ -219,7 +219,7 @@ TEST_F(Console, ResultsOfACommissioningAreListedUntilTheNextOneBegins) {
   EXPECT_TRUE(has(rows, "not measured: too few usable periods"));
   send("commission results\r");
   run(250);
-  commissioning.outcome = COMMISSIONING_RUNNING;
+  commissioning_state.begin(&drive, DRIVE_READY);
   text.clear();
   run(20000);
   EXPECT_EQ(text, "> ");
