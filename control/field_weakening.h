@@ -2,6 +2,8 @@
 //
 // Feed-forward from the steady-state voltage equation without resistance, (w Lq iq)^2 + w^2 (lambda + Ld id)^2 = V^2:
 //   id = (sqrt((V/w)^2 - (Lq iq)^2) - lambda) / Ld, and an integrator on the voltage that is left corrects it.
+// What i_d leaves of the current limit is i_q's, and the more i_q the more i_d: where a step of the one asks for more
+// than as much of the other the two would swing. So it comes at once and goes slowly.
 // Needed above the speed at which the back-EMF alone reaches V; physics: 3000 rpm on motor A needs about -7 A at 160 V.
 // Step: one speed period. Voltages V Q16, currents A Q20.
 
@@ -12,6 +14,7 @@
 
 typedef struct {
   int32_t trim_q20;  // integrator, A
+  int32_t id_q20;    // to be added to the reference, A, -limit..0
 } field_weakening_t;
 
 typedef struct {
@@ -25,7 +28,7 @@ typedef struct {
 
 void field_weakening_reset(field_weakening_t* s);
 
-/// One step; returns id (A Q20, -limit..0) to be added to the reference.
-int32_t field_weakening_step(field_weakening_t* s, const field_weakening_input_t* in, const machine_model_t* m);
+/// One step.
+void field_weakening_step(field_weakening_t* s, const field_weakening_input_t* in, const machine_model_t* m);
 
 #endif

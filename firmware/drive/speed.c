@@ -25,7 +25,7 @@ static void weaken(const drive_t* d, drive_control_t* c) {
                                       voltage_limit(d),
                                       d->config.values.weakening_limit,
                                       d->config.values.weakening_gain};
-  c->weakening_q20 = field_weakening_step(&c->weakening, &in, &d->estimate.model);
+  field_weakening_step(&c->weakening, &in, &d->estimate.model);
 }
 
 static void refer_field(const drive_t* d, drive_control_t* c) {
@@ -38,9 +38,9 @@ static void refer_field(const drive_t* d, drive_control_t* c) {
     least = 0;
   }
   c->references.current_q20.d =
-      q_clamp(qc_add_sat(q_min(c->weakening_q20, least), bias), -c->current_limit_q20, c->current_limit_q20);
+      q_clamp(qc_add_sat(q_min(c->weakening.id_q20, least), bias), -c->current_limit_q20, c->current_limit_q20);
   c->limits &= ~(int32_t)LIMIT_WEAKENING;
-  if (c->weakening_q20 < 0) c->limits |= LIMIT_WEAKENING;
+  if (c->weakening.id_q20 < 0) c->limits |= LIMIT_WEAKENING;
 }
 
 void drive_weaken_field(const drive_t* d, drive_control_t* c) {

@@ -57,7 +57,6 @@ typedef struct {
   current_controller_t current;
   speed_controller_t speed;
   field_weakening_t weakening;
-  int32_t weakening_q20;
   int32_t current_limit_q20;                   // by the background level: largest phase current now
   int32_t headroom_q20, braking_headroom_q20;  // torque current that the limits leave, and against the rotation, A
   q_inverse_t per_torque_constant;             // of N m per A, Q24, at the reference of i_d

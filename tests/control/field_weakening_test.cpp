@@ -20,6 +20,11 @@ double analytic(const Motor& motor, double w, double voltage, double iq) {
   return std::min(0.0, ((room > 0.0 ? std::sqrt(room) : 0.0) - motor.flux) / motor.ld);
 }
 
+std::int32_t stepped(field_weakening_t* s, const field_weakening_input_t* in, const machine_model_t* m) {
+  field_weakening_step(s, in, m);
+  return s->id_q20;
+}
+
 field_weakening_input_t input(double w, double iq, double voltage, double limit, double current, double gain) {
   return {bpp(w), raw(iq, 20), raw(voltage, 16), raw(limit, 16), raw(current, 20), raw(gain, 20)};
 }
@@ -30,12 +35,12 @@ TEST(FieldWeakening, MotorAAt3000RpmAnd160Volts) {
   field_weakening_t s;
   field_weakening_reset(&s);
   const field_weakening_input_t in = input(motor.electrical(3000.0), 1.0, 160.0, 160.0, 12.0, 0.002);
-  const double id = real(field_weakening_step(&s, &in, &m), 20);
+  const double id = real(stepped(&s, &in, &m), 20);
   EXPECT_GT(id, -7.0);
   EXPECT_LT(id, -6.6);
   const field_weakening_input_t low = input(motor.electrical(3000.0), 0.0, 138.0, 138.0, 12.0, 0.002);
   field_weakening_reset(&s);
-  EXPECT_NEAR(real(field_weakening_step(&s, &low, &m), 20), -10.25, 0.15);  // "-10 A at 138 V", physics
+  EXPECT_NEAR(real(stepped(&s, &low, &m), 20), -10.25, 0.15);  // "-10 A at 138 V", physics
 }
 
 TEST(FieldWeakening, FeedForwardOverTheWholeRange) {
@@ -49,7 +54,7 @@ TEST(FieldWeakening, FeedForwardOverTheWholeRange) {
     field_weakening_t s;
     field_weakening_reset(&s);
     const field_weakening_input_t in = input(w, iq, limit, limit, 30.0, 0.0);
-    const double id = real(field_weakening_step(&s, &in, &m), 20);
+    const double id = real(stepped(&s, &in, &m), 20);
     const double exact = std::max(-30.0, analytic(motor, w, limit, iq));
     // The flux is right to 2^-16/V + 1e-6 of itself; divided by Ld = 4.9 mH, and steep where the root comes to zero
     const double flux = limit / std::fabs(w);
@@ -67,7 +72,7 @@ TEST(FieldWeakening, AVoltageAcrossBeyondItsFormatLeavesNone) {
   field_weakening_t s;
   field_weakening_reset(&s);
   const field_weakening_input_t in = input(motor.electrical(300.0), 80.0, 160.0, 160.0, 12.0, 0.0);
-  EXPECT_NEAR(real(field_weakening_step(&s, &in, &m), 20), -motor.flux / motor.ld, 1e-3);
+  EXPECT_NEAR(real(stepped(&s, &in, &m), 20), -motor.flux / motor.ld, 1e-3);
 }
 
 // A magnet that is known to be stronger or weaker needs that much more or less current.
@@ -81,8 +86,7 @@ TEST(FieldWeakening, TheFeedForwardCountsWhatIsLearntOfTheMagnet) {
     field_weakening_t s;
     field_weakening_reset(&s);
     const field_weakening_input_t in = input(motor.electrical(3000.0), 2.0, 150.0, 150.0, 30.0, 0.0);
-    EXPECT_NEAR(real(field_weakening_step(&s, &in, &m), 20), analytic(exact, motor.electrical(3000.0), 150.0, 2.0),
-                1e-3);
+    EXPECT_NEAR(real(stepped(&s, &in, &m), 20), analytic(exact, motor.electrical(3000.0), 150.0, 2.0), 1e-3);
   }
 }
 
@@ -90,11 +94,51 @@ TEST(FieldWeakening, TheFeedForwardCountsWhatIsLearntOfTheMagnet) {
 TEST(FieldWeakening, AResetForgetsTheTrim) {
   const Motor motor;
   const machine_model_t m = model_of(motor);
-  field_weakening_t s = {raw(-3.0, 20)};
+  field_weakening_t s = {raw(-3.0, 20), raw(-5.0, 20)};
   field_weakening_reset(&s);
   const field_weakening_input_t fits = input(motor.electrical(3000.0), 0.0, 60.0, 60.0, 9.0, 0.01);
-  EXPECT_EQ(field_weakening_step(&s, &fits, &m), raw(-9.0, 20));
+  EXPECT_EQ(stepped(&s, &fits, &m), raw(-9.0, 20));
   EXPECT_EQ(s.trim_q20, 0);
+}
+
+// What i_d leaves of the limit is i_q's, and here an ampere of it asks for 5 of i_d: they settle, where they meet.
+TEST(FieldWeakening, ShareOfTheLimitDoesNotSwing) {
+  Motor motor;
+  motor.ld = 2.372e-4;
+  motor.lq = 4.459e-4;
+  motor.flux = 0.035;
+  motor.pole_pairs = 3;
+  const machine_model_t m = model_of(motor);
+  const double most = 150.0, w = motor.electrical(15000.0), limit = 300.0;
+  field_weakening_t s;
+  field_weakening_reset(&s);
+  double iq = most, id = 0.0, least = 0.0, largest = -most;
+  for (int n = 0; n < 400; ++n) {
+    const field_weakening_input_t in = input(w, iq, limit, limit, 120.0, 0.0);
+    id = real(stepped(&s, &in, &m), 20);
+    iq = std::sqrt(most * most - id * id);
+    if (n < 200) continue;
+    least = std::min(least, id);
+    largest = std::max(largest, id);
+  }
+  EXPECT_LT(largest - least, 0.1 * most);
+  EXPECT_NEAR((least + largest) / 2.0, analytic(motor, w, limit, iq), 0.1 * most);
+}
+
+// All of it is there at once, and gone in 64 steps.
+TEST(FieldWeakening, ComesAtOnceAndGoesSlowly) {
+  const Motor motor;
+  const machine_model_t m = model_of(motor);
+  const double w = motor.electrical(3000.0);
+  const field_weakening_input_t tight = input(w, 0.0, 138.0, 138.0, 12.0, 0.0);
+  const field_weakening_input_t wide = input(w, 0.0, 300.0, 300.0, 12.0, 0.0);
+  field_weakening_t s;
+  field_weakening_reset(&s);
+  const double all = real(stepped(&s, &tight, &m), 20);
+  EXPECT_NEAR(all, analytic(motor, w, 138.0, 0.0), 1e-2);
+  EXPECT_NEAR(real(stepped(&s, &wide, &m), 20), all + 12.0 / 64.0, 1e-3);
+  for (int n = 0; n < 64; ++n) (void)stepped(&s, &wide, &m);
+  EXPECT_EQ(stepped(&s, &wide, &m), 0);
 }
 
 TEST(FieldWeakening, NothingBelowTheBaseSpeed) {
@@ -104,7 +148,7 @@ TEST(FieldWeakening, NothingBelowTheBaseSpeed) {
   field_weakening_reset(&s);
   for (const double rpm : {0.0, 1.0, -300.0, 1500.0}) {
     const field_weakening_input_t in = input(motor.electrical(rpm), 5.0, 30.0, 155.0, 12.0, 0.002);
-    for (int n = 0; n < 200; ++n) ASSERT_EQ(field_weakening_step(&s, &in, &m), 0) << rpm;
+    for (int n = 0; n < 200; ++n) ASSERT_EQ(stepped(&s, &in, &m), 0) << rpm;
     EXPECT_EQ(s.trim_q20, 0) << "and nothing to begin with when it is needed";
   }
 }
@@ -121,7 +165,7 @@ TEST(FieldWeakening, IntegratesWhatTheFeedForwardMisses) {
   for (int n = 0; n < 3000; ++n) {
     voltage = std::hypot(w * (1.05 * motor.flux + motor.ld * id), w * motor.lq * 2.0);
     const field_weakening_input_t in = input(w, 2.0, voltage, 160.0, 12.0, 0.002);
-    id = real(field_weakening_step(&s, &in, &m), 20);
+    id = real(stepped(&s, &in, &m), 20);
   }
   EXPECT_NEAR(voltage, 160.0, 0.1);  // w Ld gain = 0.012 per step: 3000 steps are 36 time constants
   EXPECT_LT(id, analytic(motor, w, 160.0, 2.0) - 1.0);
@@ -136,7 +180,7 @@ TEST(FieldWeakening, StaysBetweenItsLimitAndZeroAndDoesNotWindUp) {
   for (int n = 0; n < 5000; ++n) {
     const field_weakening_input_t in = input(random.between(-2000.0, 2000.0), random.between(-14.0, 14.0),
                                              random.between(0.0, kNoLimit), random.between(10.0, 250.0), 9.0, 0.1);
-    const double id = real(field_weakening_step(&s, &in, &m), 20);
+    const double id = real(stepped(&s, &in, &m), 20);
     ASSERT_LE(id, 0.0);
     ASSERT_GE(id, -9.0);
     ASSERT_GE(real(s.trim_q20, 20), -9.0);
@@ -144,11 +188,11 @@ TEST(FieldWeakening, StaysBetweenItsLimitAndZeroAndDoesNotWindUp) {
   // a voltage far too high for long ...
   const field_weakening_input_t high = input(100.0, 0.0, kNoLimit, 100.0, 9.0, 0.002);
   int32_t current_q20 = 0;
-  for (int n = 0; n < 5000; ++n) current_q20 = field_weakening_step(&s, &high, &m);
+  for (int n = 0; n < 5000; ++n) current_q20 = stepped(&s, &high, &m);
   EXPECT_NEAR(real(current_q20, 20), -9.0, 1e-5);
-  // ... is forgotten within limit / (gain * volts left) = 9 / (0.002 * 90) = 50 steps
+  // ... is forgotten within limit / (gain * volts left) = 9 / (0.002 * 90) = 50 steps, and gone in 64
   const field_weakening_input_t fine = input(100.0, 0.0, 10.0, 100.0, 9.0, 0.002);
-  for (int n = 0; n < 52; ++n) current_q20 = field_weakening_step(&s, &fine, &m);
+  for (int n = 0; n < 65; ++n) current_q20 = stepped(&s, &fine, &m);
   EXPECT_EQ(current_q20, 0);
 }
 
@@ -161,8 +205,8 @@ TEST(FieldWeakening, TrimActsAtTheLimit) {
   field_weakening_reset(&s);
   // 60 V at 3000 rpm: the feed-forward is -23 A of 9
   const field_weakening_input_t in = input(motor.electrical(3000.0), 0.0, 50.0, 60.0, 9.0, 0.01);
-  EXPECT_NEAR(real(field_weakening_step(&s, &in, &m), 20), -9.0 + 0.1, 1e-4);
-  EXPECT_NEAR(real(field_weakening_step(&s, &in, &m), 20), -9.0 + 0.2, 1e-4);
+  EXPECT_NEAR(real(stepped(&s, &in, &m), 20), -9.0 + 0.1, 1e-4);
+  EXPECT_NEAR(real(stepped(&s, &in, &m), 20), -9.0 + 0.2, 1e-4);
 }
 
 }  // namespace

@@ -133,7 +133,7 @@ inline auto& speed_ramp() { return drive.control.ramp; }
 inline auto& speed_ready() { return drive.control.speed_ready; }
 inline auto& spin_d_q20() { return drive.control.spin_d_q20; }
 inline auto& target_bpp() { return drive.control.target_bpp; }
-inline auto& weakening_q20() { return drive.control.weakening_q20; }
+inline auto& weakening_q20() { return drive.control.weakening.id_q20; }
 
 // The modulator.
 inline auto& modulation() { return drive.modulation; }

@@ -166,7 +166,7 @@ TEST_F(SpeedTask, EachPeriodHasItsOwnTask) {
     use_source(POSITION_OBSERVER);
     inside::config().mapped = true;
     drive_control_t& c = inside::control();
-    c.weakening_q20 = kMark;
+    c.weakening.id_q20 = kMark;
     inertia_match.ms = kMark;
     c.references.current_q20.d = kMark;
     c.headroom_q20 = raw(3.0, 20);
@@ -176,7 +176,7 @@ TEST_F(SpeedTask, EachPeriodHasItsOwnTask) {
     inside::speed_step();
     EXPECT_EQ(c.headroom_q20 != raw(3.0, 20), k == 0) << k;
     EXPECT_EQ(c.braking_headroom_q20 != kMark, k == 0) << k;
-    EXPECT_EQ(c.weakening_q20 != kMark, k == 5) << k;
+    EXPECT_EQ(c.weakening.id_q20 != kMark, k == 5) << k;
     EXPECT_EQ(inertia_match.ms != kMark, k == 6) << k;
     EXPECT_EQ(c.references.current_q20.d != kMark, k == 0) << k;
   }

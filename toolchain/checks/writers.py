@@ -80,7 +80,6 @@ WRITERS: dict[str, tuple[str, ...]] = {
     "control.command_rpm_q16": ("firmware/drive/sequence.c", "firmware/mode/mode.c"),
     "control.target_bpp": ("firmware/drive/sequence.c", "firmware/mode/mode.c", "firmware/commissioning/spin.c"),
     "control.spin_d_q20": ("firmware/commissioning/spin.c",),
-    "control.weakening_q20": ("firmware/drive/speed.c",),
     "control.headroom_q20": ("firmware/drive/speed.c",),
     "control.braking_headroom_q20": ("firmware/drive/speed.c",),
     "control.per_torque_constant": ("firmware/drive/speed.c", _FRESH),
