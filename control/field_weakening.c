@@ -28,14 +28,14 @@ static int32_t feed_forward_q20(int64_t room_q56, const machine_model_t* m) {
   const int32_t flux_q28 = m->flux_q28 + qc_mul(m->trim.psi_q16, m->period_q30, 18);
   if (room_q56 >= q_product(flux_q28, flux_q28)) return 0;
   const int32_t axis = (room_q56 > 0) ? (int32_t)q_sqrt64((uint64_t)room_q56) : 0;
-  return qc_over(axis - flux_q28, m->per_ld, 22);
+  return qc_over(qc_sub_sat(axis, flux_q28), m->per_ld, 22);
 }
 
 void field_weakening_step(field_weakening_t* s, const field_weakening_input_t* in, const machine_model_t* m) {
   const int32_t limit = in->current_limit_q20;
   const int32_t forward = q_clamp(feed_forward_q20(room_for_axis_q56(in, m), m), -limit, 0);
   const int32_t left = in->voltage_limit_q16 - in->voltage_q16;
-  const int32_t trim = qc_add_sat(s->trim_q20, qc_mul_sat(left, in->trim_gain_q20, 16));
+  const int32_t trim = qc_add_sat(qc_mul_sat(left, in->trim_gain_q20, 16), s->trim_q20);
   // The trim may take back no more than the feed-forward gives, and add no more than the limit leaves.
   s->trim_q20 = q_clamp(trim, -limit, -forward);
   s->id_q20 = q_min(q_clamp(forward + s->trim_q20, -limit, 0), s->id_q20 + q_shr(limit, RELEASE_SHIFT));

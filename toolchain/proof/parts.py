@@ -43,7 +43,8 @@ INLINED = "svpwm_fall_of,svpwm_put_order,put_nested_order,put_centred"
 # shows that of q_sat_bits slice by slice; at q_mix and q_mix_sat the prover stops, and tests/qmath tries every edge.
 SHOWN_ELSEWHERE = ("q_sat_bits", "q_mix", "q_mix_sat")
 
-SOURCES_TABLE = "made/position_sources.c"  # of what the build makes (toolchain/compose.py)
+# Of what the build makes (toolchain/compose.py).
+SOURCES_TABLE, VARIANTS_TABLE = "made/position_sources.c", "made/source_variants.c"
 SVPWM = ("tests/prove/svpwm.c", "svpwm/*.c", QMATH)
 CONTROL = ("control/*.c", QMATH)
 ESTIMATORS = ("estimators/*.c", *CONTROL)
@@ -56,7 +57,8 @@ CONFIGURATION = (
         "firmware/config/rules.c",
         "firmware/base/clear.c",
     ),
-    *("firmware/sources/*/*.c", "firmware/start/if_start/load.c", SOURCES_TABLE, "svpwm/*.c", *ESTIMATORS),
+    *("firmware/sources/*/*.c", "firmware/start/if_start/load.c"),
+    *(SOURCES_TABLE, VARIANTS_TABLE, "svpwm/*.c", *ESTIMATORS),
 )
 OCTETS, RECORD, CRC = "firmware/base/octets.c", "firmware/link/record.c", "firmware/base/crc.c"
 CRC_BLOCK = "firmware/base/crc_block.c"
