@@ -34,9 +34,15 @@ static int32_t feed_forward_q20(int64_t room_q56, const machine_model_t* m) {
 void field_weakening_step(field_weakening_t* s, const field_weakening_input_t* in, const machine_model_t* m) {
   const int32_t limit = in->current_limit_q20;
   const int32_t forward = q_clamp(feed_forward_q20(room_for_axis_q56(in, m), m), -limit, 0);
+  const int32_t released = s->id_q20 + q_shr(limit, RELEASE_SHIFT);
+  // What the voltage has left while the current goes is no fault of the feed-forward.
+  if (q_min(forward + s->trim_q20, 0) > released) {
+    s->id_q20 = released;
+    return;
+  }
   const int32_t left = in->voltage_limit_q16 - in->voltage_q16;
   const int32_t trim = qc_add_sat(qc_mul_sat(left, in->trim_gain_q20, 16), s->trim_q20);
   // The trim may take back no more than the feed-forward gives, and add no more than the limit leaves.
   s->trim_q20 = q_clamp(trim, -limit, -forward);
-  s->id_q20 = q_min(q_clamp(forward + s->trim_q20, -limit, 0), s->id_q20 + q_shr(limit, RELEASE_SHIFT));
+  s->id_q20 = q_clamp(forward + s->trim_q20, -limit, 0);
 }

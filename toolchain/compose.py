@@ -215,16 +215,19 @@ def values_of(parameter: str, edition: Edition, root: Path) -> int:
 def variants_text(edition: Edition, root: Path) -> str:
     """The C file with which of its places a position source has there (firmware/interfaces/source.h).
 
-    Nothing where none has more than one.
+    Raises:
+        ValueError: more than one source has several places: who asks would take one for the other.
     """
-    by_place: dict[int, int] = {}
-    for feature, _ in edition.rows(SOURCES, root):
-        for places in feature.rows[SOURCES].values():
-            if isinstance(places, list):
-                by_place |= {place: k for k, place in enumerate(places, 1)}
-    if not by_place:
-        return ""
-    count = max(values_of(SOURCE, edition, root), *(place + 1 for place in by_place))
+    several = {
+        name: places
+        for feature, _ in edition.rows(SOURCES, root)
+        for name, places in feature.rows[SOURCES].items()
+        if isinstance(places, list) and len(places) > 1
+    }
+    if len(several) > 1:
+        raise ValueError(f"{edition.file}: {' and '.join(several)} have several places in {SOURCES}; one may")
+    by_place = {place: k for places in several.values() for k, place in enumerate(places, 1)}
+    count = max(values_of(SOURCE, edition, root), *(place + 1 for place in by_place)) if by_place else 1
     cells = ", ".join(str(by_place.get(place, 0)) for place in range(count))
     return "\n".join(
         [
@@ -354,7 +357,7 @@ def made(edition: Edition, root: Path = ROOT) -> dict[str, str]:
         TEXTS: pack_text.pack(kept, sum(1 for name in texts if pack_text.NAME.match(name))),
         "left_out.c": left_out_text(edition, root),
         "signal_looks.c": looks_text(edition, root),
-        **({"source_variants.c": variants} if (variants := variants_text(edition, root)) else {}),
+        "source_variants.c": variants_text(edition, root),
         **{f"{name}.c": table_text(name, edition, root) for name in TABLES},
     }
 

@@ -92,7 +92,6 @@ static void place(const drive_t* d) {
   const int32_t largest = most - q_shr(most, 3);
   s->at_zero = commissioning.uniform && ripple / 10 * 24 > largest;
   if (s->at_zero) {
-    commissioning_sample(SAMPLING_AT_ZERO);
     ripple = 0;
   } else if (ripple > q_shr(most, 1)) {
     sign = 0;
@@ -161,6 +160,14 @@ static void design_one_volt(const drive_t* d) {
   dead_time_design(c);
 }
 
+// A change that was asked for while the background level made another one may have gone with that: it is asked again.
+static bool has_sampling(const drive_t* d, commissioning_sampling_t how) {
+  const bool at_zero = d->config.modulator.pulse_ticks == 0;
+  if (at_zero == (how == SAMPLING_AT_ZERO)) return true;
+  commissioning_sample(how);
+  return false;
+}
+
 bool commissioning_climb(drive_t* d) {
   commissioning_t* const c = &commissioning;
   staircase_t* const s = &c->staircase;
@@ -176,12 +183,12 @@ bool commissioning_climb(drive_t* d) {
   commissioning_hold(d);
   if (s->index >= STAIRCASE_LEVELS) {
     commissioning_set_d(d, 0);
-    if (d->control.references.current_q20.d != 0) return false;
-    if (s->at_zero && s->tick == 0) commissioning_sample(SAMPLING_LONGER);
+    if (d->control.references.current_q20.d != 0 || !has_sampling(d, SAMPLING_LONGER)) return false;
     s->tick = qc_add_sat(s->tick, 1);
     commissioning_add_still(d);
     return s->tick > SETTLE_PERIODS + 1;
   }
+  if (s->tick == 0 && s->at_zero && !has_sampling(d, SAMPLING_AT_ZERO)) return false;
   const bool rests = s->tick == 0 && interlock_is_warm();
   commissioning_set_d(d, rests ? 0 : s->first_q20 + (int32_t)s->index * s->step_q20);
   if (rests) return false;

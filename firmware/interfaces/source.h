@@ -49,7 +49,8 @@ typedef struct {
 /// By the values of the parameter position_source (editions/).
 extern const position_source_t* const position_sources[];
 
-/// By the same: which of its values a source has there, from 1; 0 where it has but one.
+/// By the same: which of its values a source has there, from 1; 0 where it has but one. Of an edition without a source
+/// of several there is one 0, and nobody who asks.
 extern const int16_t position_source_variants[];
 
 #endif

@@ -17,7 +17,6 @@ static void reset_control(drive_t* d) {
   d->control.references = none;
   modulator_reset(&d->modulation.state);
   d->modulation.overrun = 0;
-  field_weakening_reset(&d->control.weakening);
   d->control.ramp.value = 0;
   position_hold_release(&d->control.position_hold);
 }
@@ -25,6 +24,7 @@ static void reset_control(drive_t* d) {
 static void enter(drive_t* d, drive_state_t behind) {
   clear(&d->supervision, sizeof d->supervision);
   clear(&starting, sizeof starting);
+  field_weakening_reset(&d->control.weakening);
   drive_enter(d, DRIVE_START);
   d->flags.behind = behind;
   d->flags.unseen = KNOWN_ROTOR;

@@ -141,6 +141,23 @@ TEST(FieldWeakening, ComesAtOnceAndGoesSlowly) {
   EXPECT_EQ(stepped(&s, &wide, &m), 0);
 }
 
+// Nor is what the voltage has left meanwhile integrated: the next time the current is there in full.
+TEST(FieldWeakening, WhatIsLeftWhileItGoesIsNotIntegrated) {
+  const Motor motor;
+  const machine_model_t m = model_of(motor);
+  const double w = motor.electrical(3000.0);
+  const field_weakening_input_t tight = input(w, 0.0, 130.0, 130.0, 12.0, 0.005);
+  const field_weakening_input_t wide = input(w, 0.0, 130.0, 156.0, 12.0, 0.005);  // the link has come back
+  field_weakening_t s;
+  field_weakening_reset(&s);
+  const std::int32_t all_q20 = stepped(&s, &tight, &m);
+  for (int n = 0; n < 20; ++n) {
+    (void)stepped(&s, &wide, &m);
+    ASSERT_EQ(s.trim_q20, 0) << n;
+  }
+  EXPECT_EQ(stepped(&s, &tight, &m), all_q20);
+}
+
 TEST(FieldWeakening, NothingBelowTheBaseSpeed) {
   const Motor motor;
   const machine_model_t m = model_of(motor);

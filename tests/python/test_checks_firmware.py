@@ -54,6 +54,7 @@ VALUES = "enum {\n  POSITION_ENCODER = 0,  // measured\n  POSITION_AVV = 3\n};\n
         "int32_t f(void) { const int32_t source = parameters.position_source; return source; }",
         "bool f(int32_t source) { return source != POSITION_AVV; }",
         "bool f(const parameters_t* p) { return kinds[p->position_source] == 2; }",
+        "bool f(const parameters_t* p) { return position_source_variants[p->position_source] == 2; }",
         "bool f(void) { return parameter_get(ID_position_source) != 0; }",
         "bool f(const drive_t* d) { return d->source == &avv_source; }",
         "bool f(const drive_t* d) { return d->source != position_sources[POSITION_AVV]; }",

@@ -132,9 +132,15 @@ def test_every_value_of_position_source_has_its_place_in_every_edition() -> None
 
 
 def test_a_source_with_several_values_knows_which_of_them_it_has() -> None:
-    lab, minimal = (compose.made(compose.read_edition(name), ROOT) for name in ("lab", "minimal"))
-    assert "position_source_variants[] = {0, 0, 0, 0, 0, 1, 2, 3, 4};" in lab["source_variants.c"]
-    assert "source_variants.c" not in minimal
+    lab, minimal = (compose.read_edition(name) for name in ("lab", "minimal"))
+    assert "position_source_variants[] = {0, 0, 0, 0, 0, 1, 2, 3, 4};" in compose.variants_text(lab, ROOT)
+    assert "position_source_variants[] = {0};" in compose.variants_text(minimal, ROOT)
+    one = compose.Feature("one", ROOT, rows={"position_sources": {"one_source": [9]}})
+    more = compose.Feature("more", ROOT, rows={"position_sources": {"more_source": [10, 11]}})
+    with_one = compose.Edition("own", ROOT, (*lab.features, one))
+    assert "{0, 0, 0, 0, 0, 1, 2, 3, 4};" in compose.variants_text(with_one, ROOT)
+    with pytest.raises(ValueError, match="flux_source and more_source have several places"):
+        compose.variants_text(compose.Edition("own", ROOT, (*lab.features, more)), ROOT)
 
 
 def test_texts_of_what_is_left_out_are_not_packed_but_for_names() -> None:

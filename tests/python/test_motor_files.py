@@ -204,6 +204,7 @@ def test_the_vector_follows_from_the_nameplate():
     assert tight["spin_speed"] == pytest.approx(found["spin_speed"] * tight["pulse_time"] / 42.0, abs=1.0)
     least = open_loop.following({**told, "trip_current": told["current_limit"] + 0.1}, 50.0)
     assert least["pulse_time"] == open_loop.PULSE_LEAST
+    assert "pulse_time" not in open_loop.following(told, 0.0), "a link that nothing is said of"
     assert open_loop.following({**told, "inductance_q": 1.15}, 50.0) == {}
     assert found["adapt_time"] == 50.0
     assert found["speed_ramp"] == pytest.approx(0.1 * 1.5 * 5.0 * 0.02 * 9.52 / 1e-3 * 30.0 / np.pi, abs=1.0)

@@ -139,7 +139,7 @@ WRITERS: dict[str, tuple[str, ...]] = {
         "firmware/drive/speed.c",  # learns cogging in a period that has room for it
     ),
     # By the background level, between two control interrupts.
-    "config": ("firmware/drive/reload.c", "firmware/commissioning/sequence.c", _FRESH),
+    "config": ("firmware/drive/reload.c", _FRESH),
     "config_valid": ("firmware/drive/reload.c", "firmware/boot/main.c", _FRESH),
     "conflict": ("firmware/drive/reload.c",),
     "conflict_known": ("firmware/drive/reload.c",),

@@ -56,10 +56,15 @@ def spin_most(volts: float, flux: float, pairs: float) -> float:
 
 
 def _pulse_time(told: Mapping[str, float], volts: float) -> float:
-    """The pulses, µs, whose ripple on top of the longest vector stays below the trip; the default where they do."""
+    """The pulses, µs, whose ripple on top of the longest vector stays below the trip; the default where they do.
+
+    All of it, though half of it is the vector's own on either side: saturation makes it larger there.
+    """
     ripple = 2.0 / 3.0 * volts / told["inductance_d"] * 1e-3  # A, of a pulse of 1 µs
-    enough = (told.get("trip_current", math.inf) - told["current_limit"]) / ripple
-    return min(max(round(enough, 1), PULSE_LEAST), _PULSE)
+    room = told.get("trip_current", math.inf) - told["current_limit"]
+    if room >= _PULSE * ripple:
+        return _PULSE
+    return max(math.floor(10.0 * room / ripple) / 10.0, PULSE_LEAST)
 
 
 def following(told: Mapping[str, float], volts: float) -> dict[str, float]:
@@ -88,7 +93,7 @@ def following(told: Mapping[str, float], volts: float) -> dict[str, float]:
     if told.get("inertia"):
         swing = math.sqrt(pairs * torque / told["inertia"])
         slope = min(slope, rpm(_LAG * swing / _MEAN_TIME / pairs))
-    pulse = told.get("pulse_time", _pulse_time(told, volts))
+    pulse = told["pulse_time"] if "pulse_time" in told else _pulse_time(told, volts)
     spin = min(
         max(pulse / _PULSE * _SPIN_EMF * spin_most(volts, flux, pairs), _SPIN[0]),
         _SPIN_MOST * told["speed_limit"],
