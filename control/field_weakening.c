@@ -35,7 +35,7 @@ void field_weakening_step(field_weakening_t* s, const field_weakening_input_t* i
   const int32_t limit = in->current_limit_q20;
   const int32_t forward = q_clamp(feed_forward_q20(room_for_axis_q56(in, m), m), -limit, 0);
   const int32_t released = s->id_q20 + q_shr(limit, RELEASE_SHIFT);
-  // What the voltage has left while the current goes is no fault of the feed-forward.
+  // While the current still goes, the voltage that is left says nothing about the feed-forward: the trim waits.
   if (q_min(forward + s->trim_q20, 0) > released) {
     s->id_q20 = released;
     return;

@@ -2,8 +2,8 @@
 //
 // Feed-forward from the steady-state voltage equation without resistance, (w Lq iq)^2 + w^2 (lambda + Ld id)^2 = V^2:
 //   id = (sqrt((V/w)^2 - (Lq iq)^2) - lambda) / Ld, and an integrator on the voltage that is left corrects it.
-// What i_d leaves of the current limit is i_q's, and the more i_q the more i_d: where a step of the one asks for more
-// than as much of the other the two would swing. So it comes at once and goes slowly.
+// i_d takes its share of the current limit from i_q, and less i_q needs less i_d: where that loop has a gain above one
+// the two would swing. So i_d comes at once and goes slowly.
 // Needed above the speed at which the back-EMF alone reaches V; physics: 3000 rpm on motor A needs about -7 A at 160 V.
 // Step: one speed period. Voltages V Q16, currents A Q20.
 

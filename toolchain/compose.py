@@ -213,32 +213,11 @@ def values_of(parameter: str, edition: Edition, root: Path) -> int:
 
 
 def variants_text(edition: Edition, root: Path) -> str:
-    """The C file with which of its places a position source has there (firmware/interfaces/source.h).
-
-    Raises:
-        ValueError: more than one source has several places: who asks would take one for the other.
-    """
-    several = {
-        name: places
-        for feature, _ in edition.rows(SOURCES, root)
-        for name, places in feature.rows[SOURCES].items()
-        if isinstance(places, list) and len(places) > 1
-    }
-    if len(several) > 1:
-        raise ValueError(f"{edition.file}: {' and '.join(several)} have several places in {SOURCES}; one may")
-    by_place = {place: k for places in several.values() for k, place in enumerate(places, 1)}
-    count = max(values_of(SOURCE, edition, root), *(place + 1 for place in by_place)) if by_place else 1
-    cells = ", ".join(str(by_place.get(place, 0)) for place in range(count))
-    return "\n".join(
-        [
-            f"// Made by toolchain/compose.py: the position sources of the edition {edition.name}.",
-            "",
-            '#include "firmware/interfaces/source.h"',
-            "",
-            f"const int16_t position_source_variants[] = {{{cells}}};",
-            "",
-        ]
-    )
+    """The C file with which of its places a position source has there (firmware/interfaces/source.h)."""
+    rows = [row for feature, _ in edition.rows(SOURCES, root) for row in feature.rows[SOURCES].items()]
+    places = {name: own for name, own in rows if isinstance(own, list) and len(own) > 1}
+    head = f"// Made by toolchain/compose.py: the position sources of the edition {edition.name}.\n"
+    return head + edition_tables.variants_text(places, values_of(SOURCE, edition, root))
 
 
 def header_of(feature: Feature, header: str, root: Path) -> str:

@@ -30,6 +30,23 @@ class Table:
         return "\n    ".join([head, *(f"{cell}," for cell in cells)]) + "\n};\n"
 
 
+def variants_text(places: dict[str, list[int]], count: int) -> str:
+    """Which of its places a position source has there, as C has it.
+
+    Args:
+        places: of the sources that have several.
+        count: of the places of all.
+
+    Raises:
+        ValueError: more than one source has several: who asks would take one for the other.
+    """
+    if len(places) > 1:
+        raise ValueError(f"{' and '.join(places)} have several places in position_sources; one source may")
+    by_place = {place: k for own in places.values() for k, place in enumerate(own, 1)}
+    cells = ", ".join(str(by_place.get(place, 0)) for place in range(count if by_place else 1))
+    return f'\n#include "firmware/interfaces/source.h"\n\nconst int16_t position_source_variants[] = {{{cells}}};\n'
+
+
 SERVICE, STATUS = "firmware/interfaces/service.h", "firmware/api/status.h"
 TABLES = {
     "position_sources": Table("const position_source_t", "firmware/interfaces/source.h", "places", prefix=""),

@@ -160,7 +160,7 @@ static void design_one_volt(const drive_t* d) {
   dead_time_design(c);
 }
 
-// A change that was asked for while the background level made another one may have gone with that: it is asked again.
+// A request that comes while the background level makes the configuration may be lost with it, so it is made again.
 static bool has_sampling(const drive_t* d, commissioning_sampling_t how) {
   const bool at_zero = d->config.modulator.pulse_ticks == 0;
   if (at_zero == (how == SAMPLING_AT_ZERO)) return true;

@@ -221,19 +221,6 @@ TEST_F(Commissioning, ItsEndRestoresTheConfigurationWhateverWasFound) {
   EXPECT_TRUE(inside::reload_requested()) << "nothing was measured, yet the longer settling has to go";
 }
 
-TEST_F(Commissioning, TheLongerSettlingStaysForOneThatWasAskedFor) {
-  commissioning.sampling = SAMPLING_USUAL;
-  drive_command_commission();
-  inside::withdraw_reload();
-  commissioning_service(&drive);
-  EXPECT_EQ(commissioning.sampling, SAMPLING_LONGER);
-  EXPECT_FALSE(inside::reload_requested());
-  inside::withdraw_state();  // it did not begin
-  commissioning_service(&drive);
-  EXPECT_EQ(commissioning.sampling, SAMPLING_USUAL);
-  EXPECT_TRUE(inside::reload_requested());
-}
-
 // Played from a recording, the background's work is done where it was done, and not before.
 TEST_F(Commissioning, ARecordingDecidesWhenTheBackgroundWorks) {
   begin();

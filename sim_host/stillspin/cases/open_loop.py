@@ -58,7 +58,7 @@ def spin_most(volts: float, flux: float, pairs: float) -> float:
 def _pulse_time(told: Mapping[str, float], volts: float) -> float:
     """The pulses, µs, whose ripple on top of the longest vector stays below the trip; the default where they do.
 
-    All of it, though half of it is the vector's own on either side: saturation makes it larger there.
+    The whole ripple counts, not the half of it to either side of the mean: saturation raises it near the limit.
     """
     ripple = 2.0 / 3.0 * volts / told["inductance_d"] * 1e-3  # A, of a pulse of 1 µs
     room = told.get("trip_current", math.inf) - told["current_limit"]
