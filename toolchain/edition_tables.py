@@ -10,13 +10,19 @@ class Table:
     type: str
     header: str
     form: str = "list"  # with NULL behind the last one; "one" and no more, or NULL; "places": by number, NULL between
-    least: int = 0  # places at least
+    least: int = 0  # places at least, or rows
     arrays: bool = False  # its rows are arrays
     prefix: str = "edition_"
     asked_by: str = ""  # the feature that alone asks it: without that one it has no rows
 
     def text(self, name: str, rows: list[tuple[int, str]]) -> str:
-        """Its definition, of rows with their places."""
+        """Its definition, of rows with their places.
+
+        Raises:
+            ValueError: there has to be a row, and there is none.
+        """
+        if self.form == "one" and len(rows) < self.least:
+            raise ValueError(f"no feature is there for {name}, and no edition works without it")
         refer = "&" if self.type.startswith("const ") and not self.arrays else ""  # functions need none
         if self.form == "one":
             return f"{self.type}* const {self.prefix}{name} = {refer + rows[0][1] if rows else 'NULL'};\n"
@@ -50,6 +56,10 @@ def variants_text(places: dict[str, list[int]], count: int) -> str:
 SERVICE, STATUS = "firmware/interfaces/service.h", "firmware/api/status.h"
 TABLES = {
     "position_sources": Table("const position_source_t", "firmware/interfaces/source.h", "places", prefix=""),
+    **{
+        name: Table("const position_source_t", "firmware/interfaces/source.h", "one", 1)
+        for name in ("start_source", "default_source")
+    },
     "drive_states": Table("const state_t", "firmware/interfaces/state.h", "places", 8, prefix=""),
     "start_phases": Table("const phase_t", "firmware/start/phases.h", "places", 9, prefix=""),
     "phase_control": Table("const phase_control_t", "firmware/interfaces/phase_control.h", "one"),

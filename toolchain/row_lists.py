@@ -31,6 +31,7 @@ JOINED = {
     "fault_list.h": Joined("firmware/dictionary/all_faults.h", "FAULT", (0,)),
     "request_list.h": Joined("firmware/link/all_requests.h", "REQUEST", (0, 2)),
     "command_list.h": Joined("firmware/console/all_commands.h", "COMMAND", (0,), places=True),
+    "config_list.h": Joined("firmware/interfaces/all_config_values.h", "CONFIG_VALUE", (0,)),
     "help_list.h": Joined("firmware/console/all_help.h", "HELP", (0, 1)),
 }
 

@@ -57,7 +57,7 @@ answer_status_t action_reset(octet_writer_t* why) {
   return ANSWER_OK;
 }
 
-static int32_t speed_limit_q16(void) { return qc_shl_sat(parameters.speed_limit, 8); }
+static int32_t speed_limit_q16(void) { return parameters.speed_limit * 256; }
 
 void put_speed_limit(octet_writer_t* w, packed_text_t why) {
   put_packed(w, why);

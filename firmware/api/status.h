@@ -24,6 +24,7 @@ typedef struct {
   volatile uint16_t heartbeat;  // meanwhile, in the place of the drive's own
   uint16_t store_work;          // what the parameter store is at; 0: nothing (store/)
   uint16_t refusals;            // commands that were typed and not carried out (console/)
+  uint16_t wiring;              // CATALOGUE_WIRING, what the last start has seen beside its fault (start/)
   // As of the last status_update.
   uint16_t store_state;             // CATALOGUE_STORE
   uint16_t store_progress;          // percent

@@ -3,6 +3,6 @@
 #include <stdint.h>
 
 void clear(void* at, size_t count) {
-  uint16_t* const words = at;
-  for (size_t k = 0; k < count / sizeof *words; k++) words[k] = 0;
+  uint32_t* number = at;
+  for (size_t left = count / sizeof *number; left > 0u; left--) *number++ = 0;
 }

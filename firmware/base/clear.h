@@ -5,8 +5,8 @@
 
 #include <stddef.h>
 
-/// Puts what is `count` characters long (on the C28x: words) to zero, which is 0, false or NULL for every type there.
-/// Where a character is an octet these are whole words of 16 bits, too.
+/// Puts what is `count` characters long to zero, which is 0, false or NULL for every type there. It has a number of 32
+/// bits in it, and so, by its alignment, a whole number of these for its size.
 void clear(void* at, size_t count);
 
 #endif

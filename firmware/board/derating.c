@@ -47,9 +47,8 @@ static drive_fault_t follow_heat_sink(int32_t* share_q15) {
 }
 
 int32_t board_lasting_current(void) {
-  if (drive.config.values.overload_current >= 0) return drive.config.values.overload_current;
-  return (drive.config.values.rated_current != 0) ? drive.config.values.rated_current
-                                                  : drive.config.values.current_limit / 2;
+  if (parameters.overload_current >= 0) return parameters.overload_current;
+  return (parameters.rated_current != 0) ? parameters.rated_current : drive.config.values.current_limit / 2;
 }
 
 // Square of the current, of that which may flow for ever; saturated at eleven times that current.

@@ -62,7 +62,7 @@ static void take(int32_t code) {
   const int32_t dead_q15 = qc_mul(parameters.speed_input_dead, 21474836L, 32);
   const int32_t beyond = q_clamp(share_q15, 0, ONE_Q15) - dead_q15;
   const int32_t reference = beyond <= 0 ? 0 : q_div(beyond, ONE_Q15 - dead_q15, 15);
-  drive_command_speed(qc_mul(qc_shl_sat(parameters.speed_input_full, 8), reference, 15));
+  drive_command_speed(qc_mul(parameters.speed_input_full * 256, reference, 15));
 }
 
 void board_follow_speed_input(void) {

@@ -94,7 +94,7 @@ static void react(void) {
 // The start is a request: until the control interrupt takes it, the drive is commanded but not energised. In this
 // order: a request that has gone was carried out before the state is looked at.
 static void follow_drive(can_command_t* c) {
-  const bool requested = drive.request.start;
+  const bool requested = drive_start_is_asked();
   if (!requested && !drive_is_energised()) c->commanding = false;
 }
 

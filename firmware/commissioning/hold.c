@@ -92,7 +92,7 @@ estimator_output_t commissioning_estimate(const drive_t* d, drive_estimate_t* e,
     const estimator_output_t still = {commissioning.target_bam, 0, 0, 0};
     return still;
   }
-  if (!commissioning.predicting) return position_sources[POSITION_AVV]->step(d, e, in);
+  if (!commissioning.predicting) return edition_start_source->step(d, e, in);
   if (d->schedule.moves) machine_model_follow(&e->model, e->measured_q20.q);
   tracking_observer_t* const o = &e->avv.observer;
   tracking_observer_predict(o, qc_add_sat(in->torque_accel_q8, o->load_accel_q8));  // the load as of now is left out

@@ -148,9 +148,7 @@ static packed_text_t make(drive_config_t* c) {
   return PACKED_NONE;
 }
 
-static void take(void) {}
-
-const config_part_t commissioning_part = {make, take, NULL};
+const config_part_t commissioning_part = {make, NULL};
 
 void commissioning_sample(commissioning_sampling_t how) {
   commissioning.sampling = how;

@@ -55,7 +55,7 @@ static void add_period(const drive_t* d, spin_sums_t* s, int32_t turned_bam) {
 
 // What shows no axis at rest is turned by a current vector first, and comes back with its speed.
 static void start_by_vector(drive_t* d) {
-  d->source = position_sources[POSITION_OBSERVER];  // until the parameters are loaded again
+  d->source = edition_default_source;  // until the parameters are loaded again
   d->control.target_bpp = 0;
   drive_enter(d, DRIVE_START);
   d->flags.unseen = KNOWN_ROTOR;
@@ -100,7 +100,7 @@ static void refer_d(drive_t* d) {
   int32_t parts = 0;
   if (tick >= SETTLE_PERIODS && tick < REST_PERIODS - DRIVE_PERIODS_PER_MS)
     parts = ((tick < SIGN_PERIODS) ? REST_PERIODS : SETTLE_PERIODS) - tick;
-  d->control.spin_d_q20 = commissioning.spin.part_q20 * parts;
+  d->control.references.spin_d_q20 = commissioning.spin.part_q20 * parts;
 }
 
 // Back to holding the shaft, with the motion that the background level makes of the sums.
@@ -126,7 +126,7 @@ bool commissioning_spin(drive_t* d) {
   // Each thing that is long has a period for itself.
   if (commissioning.tick == 0) {
     clear(s, sizeof *s);
-    d->control.spin_d_q20 = 0;
+    d->control.references.spin_d_q20 = 0;
     if (commissioning.uniform) start_by_vector(d);
     return false;
   }

@@ -11,7 +11,7 @@
 #include "hal/qmath/qcall.h"
 
 #define K0_MAX_Q20 1048576000L           // lambda/L of 1000 A
-#define CRAWL_MAX_RPM_Q16 655360L        // where cogging is learnt
+#define CRAWL_MAX_RPM 10                 // where cogging is learnt
 #define PER_RELEASE_ANGLE_Q60 32941987L  // binary angle, Q8, to radian, over 0.2 rad
 #define RELEASE_STEP_END_Q30 24159191L   // wc T with 225 rad/s
 #define RELUCTANCE_END_Q16 1671168L      // 25.5 N m/A with the full scale, half of the largest current
@@ -191,7 +191,7 @@ static int32_t share_per_slot_q30(int32_t time_q8) {
 static void load_hold_observer(drive_config_t* c, deviation_observer_tuning_t* t) {
   const int32_t share_q24 = q_div(RELEASE_STEP_END_Q30 / 5, c->release_step_q30, 24);
   t->noise_q20 = q_min(qc_mul_sat(t->noise_q20, share_q24, 24), t->noise_q20);
-  t->load_rate_q20 = qc_shl_sat(t->load_rate_q20, 1);
+  t->load_rate_q20 *= 2;
   t->load_rate_quiet_q20 = t->load_rate_q20;
   t->load_step_q20 = 0;
   t->steps_at_speed = false;
@@ -209,7 +209,7 @@ static bool load_position(drive_config_t* c) {
                                           p->observer_load_rate,
                                           p->observer_load_quiet,
                                           c->mapped ? p->observer_load_step : p->observer_load_step / 4 * 3,
-                                          qc_mul(CRAWL_MAX_RPM_Q16, c->bpp_per_rpm_q8, 24),
+                                          config_slow_bpp(c, CRAWL_MAX_RPM),
                                           c->mapped};
   deviation_observer_design(&c->observer, &c->nameplate, &observer);
   c->observer.cogging.order = p->cogging_order;
@@ -239,9 +239,11 @@ static bool load_position(drive_config_t* c) {
 
 // Parameters as they are, by their places in the table.
 static void load_values(config_values_t* v) {
-#define PLACE(name) PARAMETER_PLACE(name),
-  static const uint16_t places[] = {CONFIG_VALUES(PLACE)};
-#undef PLACE
+#define CONFIG_VALUE(name) PARAMETER_PLACE(name),
+  static const uint16_t places[] = {
+#include "firmware/interfaces/all_config_values.h"
+  };
+#undef CONFIG_VALUE
   int32_t* const to = (int32_t*)(void*)v;
   for (uint16_t k = 0; k < sizeof places / sizeof places[0]; k++) to[k] = parameter_at(places[k]);
 }
@@ -266,5 +268,7 @@ packed_text_t drive_config_make(void) {
 
 void drive_config_take(drive_config_t* c) {
   *c = made;
-  for (uint16_t k = 0; edition_config_parts[k] != NULL; k++) edition_config_parts[k]->take();
+  for (uint16_t k = 0; edition_config_parts[k] != NULL; k++) {
+    if (edition_config_parts[k]->take != NULL) edition_config_parts[k]->take();
+  }
 }

@@ -80,9 +80,9 @@ static void status_fault(octet_writer_t* w) {
   const uint16_t fault = (uint16_t)drive.fault;
   put_message(w, CATALOGUE_FAULT, fault);
   if (fault == FAULT_NONE) return;
-  if (fault >= FAULT_OPEN_PHASE && drive.wiring != WIRING_GOOD) {
+  if (fault >= FAULT_OPEN_PHASE && feature_status.wiring != 0u) {
     put_packed(w, SAY_colon);
-    put_message(w, CATALOGUE_WIRING, (uint16_t)drive.wiring);
+    put_message(w, CATALOGUE_WIRING, feature_status.wiring);
   }
   put_packed(w, SAY_full_stop);
   put_message(w, CATALOGUE_REMEDY, fault);

@@ -11,7 +11,7 @@
 PLACE(10)
 SIGNAL(state, NONE, 0, DRIVE, d->state, "state of the drive")
 SIGNAL(fault, NONE, 0, DRIVE, d->fault, "latched fault")
-SIGNAL(limit, NONE, 0, ASKED, d->control.limits, "active limits, one bit each")
+SIGNAL(limit, NONE, 0, ASKED, d->control.limits | d->modulation.limits, "active limits, one bit each")
 SIGNAL(angle, TURN, 32, ROTOR, d->estimate.selected.angle_bam, "electrical angle in use, at the start of the period")
 SIGNAL(speed, RPM, 16, ROTOR, SIGNAL_RPM(d->estimate.selected.speed_bpp), "mechanical speed in use")
 SIGNAL(angle_low, TURN, 32, ROTOR, d->estimate.low.angle_bam, "electrical angle of the low-speed estimator")

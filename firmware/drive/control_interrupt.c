@@ -35,7 +35,7 @@ void drive_control_step(drive_t* d) {
   drive_control_speed(d, &d->control, &d->estimate);
   drive_control_current(d, &d->control);
   hal_profile_step(CYCLES_CONTROL);
-  drive_modulate(d, &d->modulation, &d->control);
+  drive_modulate(d, &d->modulation, &d->control.current);
   void (*const onlooker)(void) = drive_onlooker;
   if (onlooker != NULL) onlooker();
 }

@@ -5,7 +5,7 @@
 #include "firmware/drive/position.h"
 #include "hal/qmath/qcall.h"
 
-#define STILL_RPM_Q16 1310720L  // 20 rpm
+#define STILL_RPM 20
 
 inertia_match_t inertia_match;
 
@@ -21,7 +21,7 @@ static void look(const drive_t* d, inertia_seen_t* in) {
   in->torque_accel_q8 = d->estimate.torque_accel_q8;
   // Three tenths of what the current limit gives.
   in->least_accel_q8 = drive_accel_q8(d, 0, d->config.values.current_limit) / 10 * 3;
-  in->still_bpp = qc_mul_sat(STILL_RPM_Q16, d->config.bpp_per_rpm_q8, 24);
+  in->still_bpp = config_slow_bpp(&d->config, STILL_RPM);
 }
 
 // The load that the observer has made of the wrong inertia goes, and the speed that it could not believe comes.

@@ -54,7 +54,7 @@ static inline void put_window(hal_pwm_frame_t* f, const svpwm_pattern_t* p, uint
 }
 
 // What was told too late leaves the pattern that runs for another period.
-static void write_frame(drive_modulation_t* m, hal_pwm_frame_t* f, uint16_t made, int32_t* limits) {
+static void write_frame(drive_modulation_t* m, hal_pwm_frame_t* f, uint16_t made) {
   const svpwm_pattern_t* const p = &m->patterns[made];
   put_window(f, p, 0u);
   put_window(f, p, 1u);
@@ -66,7 +66,7 @@ static void write_frame(drive_modulation_t* m, hal_pwm_frame_t* f, uint16_t made
     m->overrun = 0;
   } else {
     m->overrun++;
-    *limits |= LIMIT_OVERRUN;
+    m->limits |= (uint16_t)LIMIT_OVERRUN;
   }
 }
 
@@ -76,43 +76,48 @@ void drive_modulation_reset(drive_modulation_t* m) {
   modulator_reset(&m->state);
 }
 
-static void modulate_into(const drive_t* d, drive_modulation_t* m, drive_control_t* c, uint16_t made) {
+// The voltage command's pattern, and the instants of its edges.
+static void modulate(const drive_t* d, drive_modulation_t* m, current_controller_t* current, svpwm_pattern_t* pattern,
+                     hal_pwm_frame_t* f) {
+  const rotation_t r = frame_rotation(angle_at_action(d));
+  const abc_t shares_q12 = dead_time_shares_q12(&d->config.dead_time, frame_back(d->estimate.measured_q20, r));
+  const ab_t drop_q16 = dead_time_drop_of_q16(&d->config.dead_time, shares_q12);
+  const ab_t reference_q16 = frame_back(d->control.command_q16, r);
+  const ab_t command_q16 = {reference_q16.alpha + drop_q16.alpha, reference_q16.beta + drop_q16.beta};
+  m->command_q16 = command_q16;
+  const modulator_result_t result = modulator_step(&m->state, &d->config.modulator, excitation(d), command_q16,
+                                                   d->samples.link_q16, &pattern->pulses);
+  if (result.limited && d->control.references.closed) {
+    const ab_t excess_q16 = {command_q16.alpha - result.realised_q16.alpha,
+                             command_q16.beta - result.realised_q16.beta};
+    current_controller_limited(current, &d->config.current, frame_park(excess_q16, r));
+    m->limits |= (uint16_t)LIMIT_VOLTAGE;
+  }
+  const svpwm_carried_t carried = {shares_q12, d->estimate.model.yd_q30 / 2 + d->estimate.model.yq_q30 / 2,
+                                   d->samples.link_q16};
+  svpwm_compensate_edges(&d->config.dead_time, &d->config.modulator.sampling, &carried, pattern, f->edge_tick);
+}
+
+static void modulate_into(const drive_t* d, drive_modulation_t* m, current_controller_t* current, uint16_t made) {
   svpwm_pattern_t* const pattern = &m->patterns[made];
   hal_pwm_frame_t f;
   if (d->flags.shorted) {
     *pattern = short_circuit(&d->config.modulator.sampling);
     f = no_pulses;
-    hal_profile_step(CYCLES_MODULATE);
-    write_frame(m, &f, made, &c->limits);
-    return;
+  } else {
+    modulate(d, m, current, pattern, &f);
   }
-  const rotation_t r = frame_rotation(angle_at_action(d));
-  const abc_t shares_q12 = dead_time_shares_q12(&d->config.dead_time, frame_back(d->estimate.measured_q20, r));
-  const ab_t drop_q16 = dead_time_drop_of_q16(&d->config.dead_time, shares_q12);
-  const ab_t reference_q16 = frame_back(c->command_q16, r);
-  const ab_t command_q16 = {reference_q16.alpha + drop_q16.alpha, reference_q16.beta + drop_q16.beta};
-  m->command_q16 = command_q16;
-  const modulator_result_t result = modulator_step(&m->state, &d->config.modulator, excitation(d), command_q16,
-                                                   d->samples.link_q16, &pattern->pulses);
-  if (result.limited && c->references.closed) {
-    const ab_t excess_q16 = {command_q16.alpha - result.realised_q16.alpha,
-                             command_q16.beta - result.realised_q16.beta};
-    current_controller_limited(&c->current, &d->config.current, frame_park(excess_q16, r));
-    c->limits |= LIMIT_VOLTAGE;
-  }
-  const svpwm_carried_t carried = {shares_q12, d->estimate.model.yd_q30 / 2 + d->estimate.model.yq_q30 / 2,
-                                   d->samples.link_q16};
-  svpwm_compensate_edges(&d->config.dead_time, &d->config.modulator.sampling, &carried, pattern, f.edge_tick);
   hal_profile_step(CYCLES_MODULATE);
-  write_frame(m, &f, made, &c->limits);
+  write_frame(m, &f, made);
 }
 
 // Into the pattern that does not run: a call for each of the two, as what is proved of one place is not of either.
-void drive_modulate(const drive_t* d, drive_modulation_t* m, drive_control_t* c) {
+void drive_modulate(const drive_t* d, drive_modulation_t* m, current_controller_t* current) {
+  if (d->schedule.task == TASK_SPEED) m->limits = 0;
   if (edition_phase_control != NULL && edition_phase_control->step(d, m)) return;
   if (m->running == 0u) {
-    modulate_into(d, m, c, 1u);
+    modulate_into(d, m, current, 1u);
   } else {
-    modulate_into(d, m, c, 0u);
+    modulate_into(d, m, current, 0u);
   }
 }

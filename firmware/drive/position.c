@@ -74,11 +74,11 @@ void drive_estimate(const drive_t* d, drive_estimate_t* e) {
   const bool measuring = d->state == DRIVE_COMMISSION && !d->flags.spins;
   const bool open_loop = d->flags.open_loop;
   const bool starting = !measuring && !d->schedule.turning;
-  // Before the shaft turns AVV alone is at work. The spin of a commissioning runs on the observer: the other sources
-  // want windows, or an alignment, of their own.
+  // Before the shaft turns the start's alone is at work. The spin of a commissioning does not run on the one selected,
+  // which may want windows, or an alignment, of its own.
   const position_source_t* source = d->source;
-  if (d->state == DRIVE_COMMISSION) source = position_sources[POSITION_OBSERVER];
-  if (starting) source = position_sources[POSITION_AVV];
+  if (d->state == DRIVE_COMMISSION) source = edition_default_source;
+  if (starting) source = edition_start_source;
   // The windows are turned into the frame of the estimator that looks at them first: the one in use, where it is alone,
   // or that looks on.
   const bool single = (source->traits & SOURCE_SINGLE) != 0u;

@@ -51,7 +51,7 @@ static bool lost_synchronism(const drive_t* d, drive_supervision_t* v, deviation
                              int32_t ahead_bpp, int32_t apart_bam) {
   const bool measured = drive_source_has(d, SOURCE_MEASURES);
   const regression_t* const by_avv = &d->estimate.avv.regression;
-  if (measured && d->config.values.encoder_trim != 0) return false;
+  if (measured && d->estimate.selected.angle_bam != d->estimate.low.angle_bam) return false;
   synchronism_seen_t seen = {{0, 0}, 0, d->estimate.selected.speed_bpp, ahead_bpp, periods};
   // Where the observer reads the windows, its residuals say how it is: those of all periods since it was last asked.
   if (position_observer_reads(d)) {

@@ -8,7 +8,6 @@
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/reset.h"
 #include "firmware/drive/steps.h"
-#include "firmware/interfaces/config_part.h"
 #include "firmware/interfaces/service.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/interlock.h"
@@ -21,12 +20,6 @@
 uint16_t drive_dead_band_ticks(void) {
   const int32_t ticks = q_shr_round(parameters.dead_time * 100, 16);
   return (uint16_t)q_max(ticks, (int32_t)HAL_PWM_DEAD_BAND_MIN_TICKS);
-}
-
-static void set_up_parts(void) {
-  for (uint16_t k = 0; edition_config_parts[k] != NULL; k++) {
-    if (edition_config_parts[k]->set_up != NULL) edition_config_parts[k]->set_up();
-  }
 }
 
 // A changed parameter becomes effective as a whole, between two control interrupts. Only this level writes the
@@ -47,7 +40,6 @@ static void reload(void) {
   drive_command_speed(drive_commanded_speed());  // in the units of the new configuration
   if (!drive_is_energised()) {
     drive_machine_reset();
-    set_up_parts();
     if (drive.config_valid) drive.config_valid = hal_pwm_set_dead_band(drive_dead_band_ticks());
   }
   hal_replay_work_end();

@@ -71,9 +71,7 @@ static bool has_room(const drive_t* d) {
 }
 
 // A shaft that is caught wants its field weakened before it counts as one that turns.
-static bool is_beside_field(const drive_t* d) {
-  return d->flags.caught && !d->schedule.turning && d->schedule.task == TASK_FIELD;
-}
+static bool is_beside_field(const drive_t* d) { return d->flags.caught && d->schedule.task == TASK_FIELD; }
 
 static void begin(schedule_t* s) {
   s->period = (s->period < DRIVE_PERIODS_PER_MS - 1u) ? (uint16_t)(s->period + 1u) : 0u;

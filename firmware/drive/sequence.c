@@ -14,6 +14,7 @@
 #define OFFSET_MAX_Q8 (100L * 256L)          // codes off the middle: about 1 A on a 20 A range
 #define OFFSET_END_Q8 (128L * 256L)          // none beyond is ever used: samples stay in their formats
 #define OFFSET_RESIDUAL_MAX_Q8 (10L * 256L)  // mean deviation from the offset, codes: ten times the converter's noise
+#define STILL_RPM 2                          // a shaft that has stopped
 #define SETTLE_TIMEOUT 100000u               // 10 s
 
 // A shaft whose EMF exceeds the DC link drives a current through the diodes: no time to look for offsets. It brakes the
@@ -64,7 +65,7 @@ static void coast(drive_t* d) {
 
 static void stop(drive_t* d) {
   drive_supervision_t* const v = &d->supervision;
-  const int32_t still = qc_mul(2L * 65536L, d->config.bpp_per_rpm_q8, 24);
+  const int32_t still = config_slow_bpp(&d->config, STILL_RPM);
   if (d->control.ramp.value != 0) return;
   v->stopping_periods++;
   if (qc_abs_sat(d->estimate.selected.speed_bpp) <= still) {
@@ -92,34 +93,26 @@ static void break_off(drive_t* d) {
   }
 }
 
-static void begin_state(drive_t* d, drive_state_t state, drive_state_t behind) {
-  const state_t* const s = drive_states[state];
-  if (s != NULL) s->begin(d, behind);
+static void begin_state(drive_t* d, const state_request_t* r) {
+  const state_t* const s = drive_states[r->state];
+  if (s != NULL) s->begin(d, r->behind);
 }
 
 static void take_requests(drive_t* d) {
   drive_request_t* const r = &d->request;
-  if (!(r->start || r->stop || r->coast || r->reset || r->begin != NULL)) return;
+  if (!(r->stop || r->coast || r->reset || r->begin != NULL)) return;
   if (r->coast && drive_is_energised()) coast(d);
-  if (r->coast) {
-    r->start = false;
-    r->begin = NULL;
-  }
+  if (r->coast) r->begin = NULL;
   r->coast = false;
   if (r->reload) return;  // first the changed parameters, then the start
   if ((d->state == DRIVE_START || d->state == DRIVE_COMMISSION) && r->stop) break_off(d);
-  if (d->state == DRIVE_READY && r->start) {
-    begin_state(d, DRIVE_START, DRIVE_RUN);
-  } else if (d->state == DRIVE_READY && r->begin != NULL) {
-    begin_state(d, r->begin->state, r->begin->behind);
-  }
+  if (d->state == DRIVE_READY && r->begin != NULL) begin_state(d, r->begin);
   if (d->state == DRIVE_RUN && r->stop) begin_stop(d);
   if (d->state == DRIVE_FAULT && r->reset) {
     d->fault = FAULT_NONE;
     hal_safety_fault_lamp(false);
     drive_enter(d, DRIVE_CALIBRATE);
   }
-  r->start = false;
   r->stop = false;
   r->reset = false;
   r->begin = NULL;
@@ -133,7 +126,7 @@ static void take_speed(drive_t* d) {
   d->request.speed = false;
   c->command_rpm_q16 = d->request.speed_rpm_q16;
   if (d->flags.spins) return;  // the spin has a speed of its own
-  const int32_t limit_q16 = qc_shl_sat(d->config.values.speed_limit, 8);
+  const int32_t limit_q16 = d->config.values.speed_limit * 256;
   c->target_bpp = qc_mul_sat(q_clamp(c->command_rpm_q16, -limit_q16, limit_q16), d->config.bpp_per_rpm_q8, 24);
 }
 

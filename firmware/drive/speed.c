@@ -18,7 +18,7 @@ static int32_t voltage_limit(const drive_t* d) {
   return q_mul(d->samples.link_q16, q_mul(d->config.values.voltage_use, PERCENT_OF_SQRT3_INV_Q30, 16), 30);
 }
 
-static void weaken(const drive_t* d, drive_control_t* c) {
+void drive_weaken_field(const drive_t* d, drive_control_t* c) {
   const field_weakening_input_t in = {d->estimate.selected.speed_bpp,
                                       c->references.current_q20.q,
                                       q_hypot(c->command_q16.d, c->command_q16.q),
@@ -28,24 +28,19 @@ static void weaken(const drive_t* d, drive_control_t* c) {
   field_weakening_step(&c->weakening, &in, &d->estimate.model);
 }
 
-static void refer_field(const drive_t* d, drive_control_t* c) {
+void drive_refer_field(const drive_t* d, drive_control_t* c) {
   int32_t bias = (d->estimate.blend.region == BLEND_HIGH) ? 0 : d->config.values.id_low_speed;
   int32_t least = (d->config.values.mtpa == 0) ? 0 : mtpa_current_q20(&d->config.mtpa, c->references.current_q20.q);
   if (d->source->highest_d_q20 != NULL) least = q_min(least, d->source->highest_d_q20(d));
   // A commissioning's spin has the i_d that it asks for.
   if (d->state == DRIVE_COMMISSION) {
-    bias = c->spin_d_q20;
+    bias = c->references.spin_d_q20;
     least = 0;
   }
   c->references.current_q20.d =
       q_clamp(qc_add_sat(q_min(c->weakening.id_q20, least), bias), -c->current_limit_q20, c->current_limit_q20);
   c->limits &= ~(int32_t)LIMIT_WEAKENING;
   if (c->weakening.id_q20 < 0) c->limits |= LIMIT_WEAKENING;
-}
-
-void drive_weaken_field(const drive_t* d, drive_control_t* c) {
-  weaken(d, c);
-  refer_field(d, c);
 }
 
 // Current that balances the estimated load. The observers see friction as part of the load; the speed law's own model
@@ -121,7 +116,7 @@ static bool ramp_waits(const drive_t* d, int32_t target_bpp) {
 // At a reference of zero the position is kept, not only the speed: from twice a crawl down it counts as at rest.
 static int32_t hold_position(const drive_t* d, drive_control_t* c) {
   const bool at_zero = d->state == DRIVE_RUN && c->target_bpp == 0 && c->ramp.value == 0;
-  const bool slow = q_abs_sat(d->estimate.selected.speed_bpp) / 2 < d->config.observer.cogging.crawl_bpp;
+  const bool slow = q_abs_sat(d->estimate.selected.speed_bpp) < 2 * d->config.observer.cogging.crawl_bpp;
   if (!at_zero || !(slow || c->position_hold.holding)) {
     position_hold_release(&c->position_hold);
     return 0;
@@ -162,21 +157,19 @@ static void step_speed(const drive_t* d, drive_control_t* c, bool held) {
 }
 
 static void begin_millisecond(const drive_t* d, drive_control_t* c, bool held) {
-  c->limits &= LIMIT_BRAKING | LIMIT_WEAKENING;  // of the last millisecond, for the ramp; weakening renews its own
+  c->limits &= ~(int32_t)LIMIT_CURRENT;  // the ramp goes by that of braking; weakening renews its own
   if (drive_is_turning(d)) step_speed(d, c, held);
 }
 
 // A commissioning that measures at standstill commands its currents itself.
 static bool steers(const drive_t* d) { return d->state != DRIVE_COMMISSION || d->flags.spins; }
 
-static bool weakens(const drive_t* d) { return drive_is_turning(d) || d->flags.caught; }
-
 void drive_control_speed(const drive_t* d, drive_control_t* c, drive_estimate_t* e) {
   const bool held = hold_is_on(d);
   if (held) c->references.current_q20.q = hold_step_q20(d);
   switch (d->schedule.task) {
     case TASK_SPEED:
-      if (weakens(d)) refer_field(d, c);
+      if (drive_is_turning(d)) drive_refer_field(d, c);
       if (steers(d)) make_room(d, c);
       begin_millisecond(d, c, held);
       break;
@@ -184,7 +177,7 @@ void drive_control_speed(const drive_t* d, drive_control_t* c, drive_estimate_t*
       if (d->schedule.judges) deviation_observer_learn(&e->observer, &d->config.observer);
       break;
     case TASK_FIELD:
-      if (weakens(d)) weaken(d, c);
+      if (drive_is_turning(d)) drive_weaken_field(d, c);
       break;
     case TASK_JUDGE:
       make_torque_constant(d, c);

@@ -45,7 +45,8 @@ void drive_sequence(drive_t* d);  // drive/sequence.c
 /// Speed control and field weakening, and what is learnt of load and inertia.
 void drive_control_speed(const drive_t* d, drive_control_t* c, drive_estimate_t* e);  // drive/speed.c
 void drive_control_current(const drive_t* d, drive_control_t* c);                     // drive/current.c
-void drive_modulate(const drive_t* d, drive_modulation_t* m, drive_control_t* c);     // modulation.c
+/// Tells the current control what of its command has no voltage.
+void drive_modulate(const drive_t* d, drive_modulation_t* m, current_controller_t* current);  // modulation.c
 void drive_modulation_reset(drive_modulation_t* m);
 
 /// Lets the position sources and the speed control start from this angle and speed (drive/bumpless_transfer.c).
@@ -54,8 +55,10 @@ void drive_bumpless_transfer(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 /// Torque current that the limit leaves beside the reference of i_d, A.
 int32_t drive_current_headroom(const drive_t* d);
 
-/// Field weakening of this instant, into the d-axis reference; while the shaft turns it takes four periods of the
-/// millisecond.
-void drive_weaken_field(const drive_t* d, drive_control_t* c);  // drive/speed.c
+// Once in a millisecond each, in periods of their own (drive/speed.c).
+/// TASK_FIELD: what weakens the field.
+void drive_weaken_field(const drive_t* d, drive_control_t* c);
+/// TASK_SPEED: the reference of i_d, by that, torque per ampere, and what the source bears.
+void drive_refer_field(const drive_t* d, drive_control_t* c);
 
 #endif

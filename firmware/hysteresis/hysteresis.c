@@ -50,7 +50,7 @@ static void take(void) {
   config.chosen = parameters.current_law == CURRENT_LAW_HYSTERESIS;
 }
 
-const config_part_t hysteresis_part = {make, take, NULL};
+const config_part_t hysteresis_part = {make, take};
 
 static uint16_t decide(uint16_t state, uint16_t leg_bit, int32_t lack, int32_t band) {
   if (lack > band) return (uint16_t)(state | leg_bit);
@@ -83,9 +83,11 @@ static void hysteresis_slice(void) {
   uint16_t state = decide(h->state, 1u, lack_a, h->band_q8);
   state = decide(state, 2u, lack_b, h->band_q8);
   state = decide(state, 4u, -lack_a - lack_b, h->band_q8);
-  if (state != h->state) hal_sampling_timer_set_legs(state);
-  h->switched = (uint16_t)(h->switched + risen(h->state, state));
-  h->state = state;
+  if (state != h->state) {
+    hal_sampling_timer_set_legs(state);
+    h->switched = (uint16_t)(h->switched + risen(h->state, state));
+    h->state = state;
+  }
   h->reference_a_q8 = q_limit(h->reference_a_q8 + h->step_a_q8, CODES_END_Q8);
   h->reference_b_q8 = q_limit(h->reference_b_q8 + h->step_b_q8, CODES_END_Q8);
   gather(&h->sums, a, b, now.link);

@@ -50,4 +50,9 @@ typedef struct drive_config {
   config_values_t values;
 } drive_config_t;
 
+/// Electrical speed of a few rpm, up to 20, of whatever number of pole pairs.
+static inline int32_t config_slow_bpp(const drive_config_t* c, int32_t rpm) {
+  return q_shr_round(rpm * c->bpp_per_rpm_q8, 8);
+}
+
 #endif

@@ -16,10 +16,8 @@ typedef struct {
   /// (text/packed_text.h). Background level. NULL: `take` alone does it.
   uint16_t (*make)(struct drive_config* c);
   /// What was made last is in use from here on: with the rest of the configuration, between two control interrupts. The
-  /// parameters are still those that it was made of.
+  /// parameters are still those that it was made of. NULL: it keeps none of its own.
   void (*take)(void);
-  /// The same for the board, with the power stage off and behind `take`; NULL: nothing.
-  void (*set_up)(void);
 } config_part_t;
 
 /// Those of the edition in their order, NULL behind the last one (editions/).

@@ -63,9 +63,8 @@ typedef struct {
   ramp_t ramp;
   position_hold_t position_hold;  // kept at a reference of zero
   references_t references;
-  int32_t spin_d_q20;       // i_d that a commissioning's spin asks for, A
   dq_t command_q16;         // voltage command
-  int32_t limits;           // what stands in the way, one bit each (interfaces/references.h)
+  int32_t limits;           // of current and speed, one bit each (mode/states.h)
   int32_t command_rpm_q16;  // speed command, mechanical
   int32_t target_bpp;       // the same, electrical
   bool speed_ready;         // the speed controller could be set up
@@ -76,6 +75,7 @@ typedef struct {
   uint16_t sampled;          // place of the pattern of the period whose windows were just read
   uint16_t running;          // of that which has just begun
   uint16_t overrun;          // periods repeated because the interrupt was late
+  uint16_t limits;           // of voltage and time since the millisecond began, one bit each (mode/states.h)
   modulator_t state;
   svpwm_pattern_t patterns[2];  // where one is made, nobody needs what it held any more
   ab_t command_q16;             // voltage commanded of the modulator, drops of the devices added

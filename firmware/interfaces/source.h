@@ -48,6 +48,10 @@ typedef struct {
 
 /// By the values of the parameter position_source (editions/).
 extern const position_source_t* const position_sources[];
+/// Before the shaft turns: finds the axis of a rotor at rest.
+extern const position_source_t* const edition_start_source;
+/// In a commissioning's spin, and where this edition leaves out the one that the parameter selects.
+extern const position_source_t* const edition_default_source;
 
 /// By the same: which of its values a source has there, from 1; 0 where it has but one. Of an edition without a source
 /// of several there is one 0, and nobody who asks.

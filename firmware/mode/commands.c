@@ -7,21 +7,20 @@
 
 void drive_parameters_changed(void) { drive.request.reload = true; }
 
-void drive_command_start(void) { drive.request.start = true; }
+static const state_request_t start_and_run = {DRIVE_START, DRIVE_RUN};
 
-// What was asked for before and not carried out yet is not wanted any more: it must not outlive the stop that follows.
-static void forget_starts(void) {
-  drive.request.start = false;
-  drive.request.begin = NULL;
-}
+void drive_command_start(void) { drive.request.begin = &start_and_run; }
 
+bool drive_start_is_asked(void) { return drive.request.begin == &start_and_run; }
+
+// What was asked for before and not begun yet is not wanted any more: it must not outlive the stop that follows.
 void drive_command_stop(void) {
-  forget_starts();
+  drive.request.begin = NULL;
   drive.request.stop = true;
 }
 
 void drive_command_coast(void) {
-  forget_starts();
+  drive.request.begin = NULL;
   drive.request.coast = true;
 }
 

@@ -28,6 +28,8 @@ drive_state_t drive_state(void);
 bool drive_is_energised(void);
 
 void drive_command_start(void);
+/// It has been, and the control interrupt has not taken it yet.
+bool drive_start_is_asked(void);
 /// Speed to zero along the ramp, then gates off; a start procedure is broken off at once.
 void drive_command_stop(void);
 /// Gates off with the next control interrupt, whatever the speed: the shaft runs out. READY follows.

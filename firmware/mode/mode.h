@@ -7,7 +7,6 @@
 #ifndef STILLSPIN_FIRMWARE_MODE_MODE_H
 #define STILLSPIN_FIRMWARE_MODE_MODE_H
 
-#include "estimators/wiring.h"
 #include "firmware/interfaces/config.h"
 #include "firmware/interfaces/period.h"
 #include "firmware/interfaces/state.h"
@@ -15,8 +14,8 @@
 #include "firmware/text/packed_text.h"
 
 typedef struct {
-  bool start, stop, coast, reset, reload;
-  const state_request_t* begin;  // a feature's, in the place of a start; NULL: none
+  bool stop, coast, reset, reload;
+  const state_request_t* begin;  // a start, or what a feature has in its place; NULL: none
   // A speed and its value, which is written first: neither may change places.
   volatile bool speed;
   volatile int32_t speed_rpm_q16;
@@ -41,8 +40,7 @@ typedef struct drive {
   drive_samples_t samples;
   drive_modulation_t modulation;
   drive_supervision_t supervision;
-  wiring_t wiring;      // mistake that the last start has seen, beside the fault that it brought about
-  uint32_t settled_at;  // period in which the currents will have been at rest for long enough
+  uint32_t settled_at;                           // period in which the currents will have been at rest for long enough
   int32_t zero_current_a_q8, zero_current_b_q8;  // currents at rest while the offsets are found, codes
   int32_t offset_residual_q8;  // mean deviation of the currents from their offsets while these are found, codes
   drive_config_t config;

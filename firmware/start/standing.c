@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "estimators/wiring.h"
+#include "firmware/api/status.h"
 #include "firmware/drive/brake_release_hold.h"
 #include "firmware/drive/inertia.h"
 #include "firmware/drive/position.h"
@@ -18,7 +20,7 @@
 #define MOTION_TRIES 4u
 #define HELD_TRIES 6u
 #define HOLD_BACKS 2u
-#define TURNING_RPM_Q16 1310720L  // 20 rpm: slower counts as standing, AVV's speed is noise
+#define TURNING_RPM 20  // slower counts as standing, AVV's speed is noise
 
 static void begin_axis(drive_t* d) {
   if (start_begin_standstill(d)) start_enter(START_AXIS);
@@ -36,7 +38,7 @@ static start_phase_t step_axis(drive_t* d) {
   const bool seen = start_sees_axis(d, starting.tick >= AXIS_SKIP, &axis_bam);
   position_preset_axis(&d->estimate, (uint32_t)axis_bam, 0);  // the regressions must be made at one and the same angle
   if (!seen) return START_GOES_ON;
-  const drive_fault_t fault = fault_of(d->wiring);
+  const drive_fault_t fault = fault_of((wiring_t)feature_status.wiring);
   if (fault != FAULT_NONE) {
     drive_trip(d, fault);
     return START_GOES_ON;
@@ -53,7 +55,7 @@ static start_phase_t step_axis(drive_t* d) {
 // AVV's speed where it is more than noise.
 static int32_t present_speed(const drive_t* d) {
   const int32_t speed = d->estimate.avv.observer.speed_bpp;
-  const int32_t least = qc_mul_sat(TURNING_RPM_Q16, d->config.bpp_per_rpm_q8, 24);
+  const int32_t least = config_slow_bpp(&d->config, TURNING_RPM);
   return (qc_abs_sat(speed) > least) ? speed : 0;
 }
 

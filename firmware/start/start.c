@@ -4,6 +4,8 @@
 
 #include <stddef.h>
 
+#include "estimators/wiring.h"
+#include "firmware/api/status.h"
 #include "firmware/base/clear.h"
 #include "firmware/drive/inertia.h"
 #include "firmware/drive/position.h"
@@ -13,7 +15,7 @@
 #include "firmware/start/phases.h"
 
 static void reset_control(drive_t* d) {
-  static const references_t none = {{0, 0}, 0, false};
+  static const references_t none = {{0, 0}, 0, 0, false};
   d->control.references = none;
   modulator_reset(&d->modulation.state);
   d->modulation.overrun = 0;
@@ -38,7 +40,7 @@ static bool prepare(drive_t* d, drive_state_t behind) {
     drive_trip(d, FAULT_PARAMETER);
     return false;
   }
-  d->wiring = WIRING_GOOD;
+  feature_status.wiring = (uint16_t)WIRING_GOOD;
   d->estimate.model = d->config.nameplate;
   inertia_match_reset(&inertia_match);
   speed_controller_scale(&d->control.speed, INERTIA_SAME_Q24);

@@ -4,6 +4,8 @@
 
 #include <stddef.h>
 
+#include "estimators/wiring.h"
+#include "firmware/api/status.h"
 #include "firmware/base/clear.h"
 #include "firmware/drive/position.h"
 #include "firmware/drive/steps.h"
@@ -72,9 +74,10 @@ void start_run(drive_t* d, uint32_t angle_bam, int32_t speed_bpp) {
   if (d->state == DRIVE_STOP) drive_states[DRIVE_COMMISSION]->abandon();
 }
 
-static void judge_wiring(drive_t* d) {
+static void judge_wiring(const drive_t* d) {
   if (!checks_wiring()) return;
-  d->wiring = wiring_judge(&starting.axis, &d->estimate.model, q_shr(d->config.slopes.amps_per_code_q30, 10));
+  feature_status.wiring =
+      (uint16_t)wiring_judge(&starting.axis, &d->estimate.model, q_shr(d->config.slopes.amps_per_code_q30, 10));
 }
 
 bool start_sees_axis(drive_t* d, bool valid, int32_t* axis_bam) {

@@ -180,13 +180,25 @@ def _built(kind: str) -> list[str]:
     return sorted(path.parent.name for path in (Path(__file__).parent / _OTHERS[kind]).glob("*/_core*.so"))
 
 
+def editions() -> list[str]:
+    """Those that there is a virtual drive of, the one in use first; none without a virtual drive."""
+    if not _has_usual():
+        return []
+    known = [LAB, *_built(EDITION)]
+    return sorted(known, key=lambda name: (name != (os.environ.get(EDITION) or LAB), known.index(name)))
+
+
+def _has_usual() -> bool:
+    return any(Path(__file__).parent.glob("_core*.so")) or importlib.util.find_spec("stillspin_virtual") is not None
+
+
 def require() -> None:
     """Complain at once where there is no virtual drive at all, without loading one.
 
     Raises:
         InputError: none is built or installed.
     """
-    if not any(Path(__file__).parent.glob("_core*.so")) and importlib.util.find_spec("stillspin_virtual") is None:
+    if not _has_usual():
         raise InputError(NOT_INSTALLED)
 
 

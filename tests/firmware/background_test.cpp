@@ -44,17 +44,15 @@ TEST_F(Reload, NothingIsDoneThatWasNotAskedFor) {
 TEST_F(Reload, TheMachineFollowsWhileThePowerStageIsOff) {
   for (const drive_state_t state : {DRIVE_READY, DRIVE_RUN}) {
     SetUp();
-    inside::state() = state;
+    inside::be_in(state);
     const bool off = state == DRIVE_READY;
     inside::model().trim.rs_q24 = 12345;
     inside::speed_ready() = false;
     const std::int32_t share = inside::speed_controller().gains.share_q30;
-    parameters.encoder_counts = 1000;
     parameters.dead_time = raw(1.3, 16);
     parameters.magnet_flux = raw(0.1, 28);
     parameters.speed_alpha = raw(20.0, 14);
     board.dead_band = 0;
-    board.encoder_counts = 0;
     reload();
     EXPECT_TRUE(inside::config_valid());
     EXPECT_EQ(inside::config().nameplate.flux_q28, raw(0.1, 28));
@@ -62,7 +60,6 @@ TEST_F(Reload, TheMachineFollowsWhileThePowerStageIsOff) {
     EXPECT_EQ(inside::model().trim.rs_q24, off ? 0 : 12345);
     EXPECT_EQ(inside::speed_ready(), off);
     EXPECT_EQ(inside::speed_controller().gains.share_q30 != share, off);
-    EXPECT_EQ(board.encoder_counts, off ? 1000u : 0u);
     EXPECT_EQ(board.dead_band, off ? 130 : 0);
   }
 }
@@ -116,7 +113,7 @@ class Inertia : public Drive {
   void SetUp() override {
     Drive::SetUp();
     make_ready();
-    inside::state() = DRIVE_RUN;
+    inside::be_in(DRIVE_RUN);
     inside::config().mapped = true;
     parameters.inertia_adapt = 1;
     use_source(POSITION_OBSERVER);
@@ -224,7 +221,7 @@ TEST_F(Inertia, OutsideOfRunARunUpIsForgotten) {
   for (const drive_state_t state : {DRIVE_READY, DRIVE_START, DRIVE_STOP, DRIVE_FAULT}) {
     run_up(0.5);
     inertia_match.quiet_ms = 30;
-    inside::state() = state;
+    inside::be_in(state);
     inside::match_inertia();
     EXPECT_EQ(inertia_match.phase, INERTIA_REST);
     EXPECT_EQ(inertia_match.quiet_ms, 0);
@@ -246,7 +243,7 @@ TEST(SignalTable, EverySignalHasAPlaceAndNothingIsBehindTheLast) {
   const auto last = static_cast<std::uint16_t>(signal_count() - 1);
   EXPECT_EQ(inside::signal(last, KNOWN_HEAT_SINK), 20 * 256) << "the last of them";
   EXPECT_EQ(inside::signal(last, 0), 0);
-  inside::state() = DRIVE_STOP;
+  inside::be_in(DRIVE_STOP);
   EXPECT_EQ(inside::signal(0, 0), DRIVE_STOP);
   EXPECT_EQ(drive_signals().state, DRIVE_STOP);
 }

@@ -61,16 +61,16 @@ TEST_F(Derating, AHotHeatSinkTakesHalfTheCurrentAndThenAll) {
 TEST_F(Derating, ABrokenSensorIsAFaultOnceTheDriveIsCalibrated) {
   parameters.temperature_limit = raw(130.0, 8);
   for (const int code : {3937 + 33, 159 - 33}) {
-    inside::state() = DRIVE_CALIBRATE;
+    inside::be_in(DRIVE_CALIBRATE);
     inside::fault() = FAULT_NONE;
     convert(static_cast<std::uint16_t>(code));
     look(8);
     EXPECT_EQ(inside::state(), DRIVE_CALIBRATE);
-    inside::state() = DRIVE_READY;
+    inside::be_in(DRIVE_READY);
     look(8);
     EXPECT_EQ(inside::fault(), FAULT_TEMPERATURE) << code;
   }
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   convert(3937 + 32);  // colder than the table, but a sensor
   look(8);
   EXPECT_EQ(inside::state(), DRIVE_READY);
@@ -81,7 +81,7 @@ TEST_F(Derating, OverloadIsBorneForItsTime) {
   parameters.overload_current = raw(10.0, 20);
   parameters.overload_time = 1000;
   use_parameters();
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::current_dq_q20() = {raw(-6.0, 20), raw(10.3923, 20)};  // 12 A
   const int looks = looks_to_fault(5000);
   EXPECT_EQ(inside::fault(), FAULT_OVERLOAD);
@@ -92,7 +92,7 @@ TEST_F(Derating, OverloadIsBorneForItsTime) {
 TEST_F(Derating, WithoutAnotherCurrentTheMotorsRatedOneCounts) {
   parameters.rated_current = raw(4.0, 20);
   use_parameters();
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::current_dq_q20() = {0, raw(8.0, 20)};
   const int looks = looks_to_fault(60000);
   EXPECT_EQ(inside::fault(), FAULT_OVERLOAD);
@@ -125,7 +125,7 @@ TEST_F(Derating, WithoutARatedCurrentHalfOfTheLimitCounts) {
 TEST_F(Derating, AnOverloadCurrentOfZeroWatchesNothing) {
   parameters.overload_current = 0;
   use_parameters();
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::current_dq_q20() = {0, raw(30.0, 20)};
   look(200000);
   EXPECT_EQ(inside::state(), DRIVE_RUN);
@@ -137,7 +137,7 @@ TEST_F(Derating, TheMeanSquareIsAsFineForASmallMotor) {
   parameters.rated_current = raw(0.1, 20);
   parameters.overload_time = 600000;
   use_parameters();
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::current_dq_q20() = {0, raw(0.12, 20)};
   const int looks = looks_to_fault(1200000);
   EXPECT_EQ(inside::fault(), FAULT_OVERLOAD);
@@ -148,7 +148,7 @@ TEST_F(Derating, TheLimitFallsToWhatMayFlowForEver) {
   parameters.overload_current = raw(10.0, 20);
   parameters.overload_time = 1000;
   use_parameters();
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   const std::pair<double, double> cases[] = {{8.8, 1.0}, {9.5, 0.5 * (1.0 + 10.0 / 14.0)}, {10.1, 10.0 / 14.0}};
   for (const auto& [amps, expected] : cases) {
     inside::current_dq_q20() = {0, raw(amps, 20)};
@@ -156,12 +156,12 @@ TEST_F(Derating, TheLimitFallsToWhatMayFlowForEver) {
     EXPECT_NEAR(share(), expected, 0.02) << amps;
   }
   EXPECT_EQ(inside::state(), DRIVE_RUN);
-  inside::state() = DRIVE_READY;  // no current flows, whatever was measured last
+  inside::be_in(DRIVE_READY);  // no current flows, whatever was measured last
   look(3000);
   EXPECT_NEAR(share(), 1.0, 1e-3);
   parameters.overload_current = raw(20.0, 20);  // above the limit in use: nothing falls
   use_parameters();
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::current_dq_q20() = {0, raw(19.5, 20)};
   look(12000);
   EXPECT_NEAR(share(), 1.0, 1e-3);
@@ -173,7 +173,7 @@ TEST_F(Derating, TheHotterOfTheTwoRules) {
   parameters.overload_current = raw(10.0, 20);
   parameters.overload_time = 1000;
   use_parameters();
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::current_dq_q20() = {0, raw(10.1, 20)};
   convert(1497);
   look(12000);

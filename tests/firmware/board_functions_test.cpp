@@ -30,7 +30,7 @@ TEST_F(BoardFunctions, OutputsAreSetUpOnce) {
   EXPECT_EQ(board.digital_io_wired, 1);
   EXPECT_EQ(board.emergency_wired, 1);
   drive_reset();
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   inside::loading() = false;
   parameters.brake_voltage = raw(400.0, 16);
   look();
@@ -50,10 +50,10 @@ TEST_F(BoardFunctions, TheRelayFollowsTheChargeOfTheLink) {
   EXPECT_NE(words().find("precharge relay closed"), std::string::npos);
   look_at_link(151.0);
   EXPECT_TRUE(board.relay);
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   look_at_link(149.0);
   EXPECT_TRUE(board.relay) << "a relay is not opened under current";
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   look();
   EXPECT_FALSE(board.relay);
 }
@@ -100,7 +100,7 @@ TEST_F(BoardFunctions, TheBrakeResistorIsNotBurnt) {
   parameters.brake_voltage = raw(380.0, 16);
   for (const int percent : {10, 20}) {
     parameters.brake_share = raw(percent, 16);
-    inside::state() = DRIVE_READY;
+    inside::be_in(DRIVE_READY);
     ::board.brake_mean_q30 = 0;
     look_at_link(300.0);
     inside::link_q16() = raw(390.0, 16);
@@ -156,10 +156,10 @@ TEST_F(BoardFunctions, NothingIsJudgedWhileTheDriveBoots) {
   parameters.emergency_stop = 1;
   use_parameters();
   board.emergency = true;
-  inside::state() = DRIVE_BOOT;
+  inside::be_in(DRIVE_BOOT);
   look(10);
   EXPECT_EQ(inside::fault(), FAULT_NONE);
-  inside::state() = DRIVE_CALIBRATE;
+  inside::be_in(DRIVE_CALIBRATE);
   look();
   EXPECT_EQ(inside::fault(), FAULT_EMERGENCY);
 }

@@ -27,7 +27,7 @@ class BoardFunctions : public Drive {
  protected:
   void SetUp() override {
     Drive::SetUp();
-    inside::state() = DRIVE_READY;
+    inside::be_in(DRIVE_READY);
     inside::loading() = false;
     parameters.rated_current = raw(10.89, 20);
     use_parameters();

@@ -113,7 +113,7 @@ TEST_F(CanCommand, OnlyARisingBitClearsAndOnlyAFault) {
   make_ready();
   take(frame(CAN_MODE_OFF, 0, true));
   EXPECT_FALSE(inside::reset_requested()) << "there is no fault";
-  inside::state() = DRIVE_FAULT;
+  inside::be_in(DRIVE_FAULT);
   take(frame(CAN_MODE_OFF, 0, true));
   EXPECT_FALSE(inside::reset_requested()) << "the bit has been there since before the fault";
   take(frame(CAN_MODE_OFF, 0, false));

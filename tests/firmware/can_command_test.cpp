@@ -182,10 +182,10 @@ TEST_F(CanCommand, AStopForgetsAStartThatHasNotBeenTaken) {
 
 TEST_F(CanCommand, ASpeedIsTakenOnlyByADriveThatTheBusRuns) {
   make_running_by_bus();
-  inside::state() = DRIVE_FAULT;
+  inside::be_in(DRIVE_FAULT);
   take(frame(CAN_MODE_RUN, 400));
   EXPECT_EQ(drive_commanded_speed(), 0) << "not for after the fault";
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   command.commanding = false;
   take(frame(CAN_MODE_RUN, 400));
   EXPECT_EQ(drive_commanded_speed(), 0) << "somebody else's";

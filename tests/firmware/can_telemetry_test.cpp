@@ -46,7 +46,7 @@ class CanTelemetry : public Drive {
 using Fields = std::vector<can_field_t>;
 
 TEST_F(CanTelemetry, EachBitOfTheStatusHasAMeaningOfItsOwn) {
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   const hal_can_frame_t idle = status();
   EXPECT_EQ(can_get(&idle, CAN_STATUS_STATE), DRIVE_READY);
   command.commanding = true;
@@ -56,16 +56,16 @@ TEST_F(CanTelemetry, EachBitOfTheStatusHasAMeaningOfItsOwn) {
   EXPECT_EQ(changed(idle, status()), Fields{CAN_STATUS_TIMED_OUT});
   command.timed_out = false;
   EXPECT_EQ(changed(idle, status(9)), Fields{CAN_STATUS_ALIVE});
-  inside::state() = DRIVE_STOP;
+  inside::be_in(DRIVE_STOP);
   EXPECT_EQ(changed(idle, status()), (Fields{CAN_STATUS_STATE, CAN_STATUS_ENERGISED, CAN_STATUS_SPEED_KNOWN}));
-  inside::state() = DRIVE_FAULT;
+  inside::be_in(DRIVE_FAULT);
   inside::fault() = FAULT_OVER_CURRENT;
   EXPECT_EQ(changed(idle, status()), (Fields{CAN_STATUS_STATE, CAN_STATUS_FAULT}));
 }
 
 TEST_F(CanTelemetry, TheStatusNamesStateFaultAndLimits) {
   for (int state = DRIVE_BOOT; state <= DRIVE_COMMISSION; ++state) {
-    inside::state() = static_cast<drive_state_t>(state);
+    inside::be_in(static_cast<drive_state_t>(state));
     const hal_can_frame_t frame = status();
     EXPECT_EQ(can_get(&frame, CAN_STATUS_STATE), state);
     EXPECT_EQ(can_get(&frame, CAN_STATUS_ENERGISED), drive_is_energised() ? 1 : 0);
@@ -80,7 +80,7 @@ TEST_F(CanTelemetry, TheStatusNamesStateFaultAndLimits) {
 }
 
 TEST_F(CanTelemetry, SpeedsAreInRevolutionsPerMinute) {
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::selected().speed_bpp = bpp_of(1500);
   inside::ramped_bpp() = bpp_of(-750);
   const hal_can_frame_t frame = status();
@@ -90,7 +90,7 @@ TEST_F(CanTelemetry, SpeedsAreInRevolutionsPerMinute) {
 
 // Every value another one, so that none can stand for its neighbour.
 TEST_F(CanTelemetry, CurrentsVoltagesAndTorqueAreInTheirUnits) {
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::current_dq_q20() = {raw(-1.5, 20), raw(7.25, 20)};
   inside::reference_dq_q20() = {raw(-2.125, 20), raw(9.75, 20)};
   inside::command_dq_q16() = {raw(-80.5, 16), raw(120.25, 16)};

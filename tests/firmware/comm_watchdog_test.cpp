@@ -12,15 +12,15 @@ class CommWatchdog : public Requests {
  protected:
   void SetUp() override {
     Requests::SetUp();
-    inside::state() = DRIVE_READY;
+    inside::be_in(DRIVE_READY);
     parameters.link_timeout = 200;
   }
   static constexpr std::int32_t kMine = 0x12345, kOthers = 0x12347;
   Answer tell(std::int32_t number) { return ask(REQUEST_STATUS, little(static_cast<std::uint32_t>(number), 4)); }
   void start(std::int32_t argument) {
     ASSERT_EQ(give(COMMAND_START, argument).status(), OK);
-    inside::withdraw_start();
-    inside::state() = DRIVE_RUN;
+    inside::withdraw_state();
+    inside::be_in(DRIVE_RUN);
   }
 };
 
@@ -41,9 +41,9 @@ TEST_F(CommWatchdog, SilenceStopsTheDrive) {
 TEST_F(CommWatchdog, AFaultEndsItBeforeTheStartWasCarriedOut) {
   ASSERT_EQ(give(COMMAND_START, kMine).status(), OK);
   EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 1u);
-  inside::state() = DRIVE_FAULT;
+  inside::be_in(DRIVE_FAULT);
   EXPECT_EQ(ask(REQUEST_STATUS).number(22, 1), 0u);
-  inside::state() = DRIVE_RUN;  // reset and started by somebody else
+  inside::be_in(DRIVE_RUN);  // reset and started by somebody else
   run(3000);
   EXPECT_FALSE(inside::stop_requested());
 }
@@ -66,7 +66,7 @@ TEST_F(CommWatchdog, ItIsAskedForWithTheLowestBit) {
   NEEDS("commissioning");
   start(~1);
   EXPECT_FALSE(comm_watchdog_is_on());
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   ASSERT_EQ(give(COMMAND_COMMISSION, ~1).status(), OK);
   EXPECT_FALSE(comm_watchdog_is_on());
   ASSERT_EQ(give(COMMAND_COMMISSION, kMine).status(), OK);
@@ -113,7 +113,7 @@ TEST_F(CommWatchdog, SilenceIsAsLongAsToldAndEndsItOnce) {
     comm_watchdog_service();
     return inside::stop_requested();
   };
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::time_ms() = 1000;
   comm_watchdog_begin(COMM_WATCHDOG_BUS, 7);
   EXPECT_FALSE(stops_at(1199));
@@ -124,11 +124,11 @@ TEST_F(CommWatchdog, SilenceIsAsLongAsToldAndEndsItOnce) {
   EXPECT_FALSE(comm_watchdog_is_on() || stops_at(9999));
   comm_watchdog_begin(COMM_WATCHDOG_BUS, 7);
   EXPECT_FALSE(comm_watchdog_has_stopped()) << "since the last start";
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   EXPECT_TRUE(stops_at(20000)) << "a start that was not carried out yet is taken back";
   EXPECT_FALSE(comm_watchdog_has_stopped());
   comm_watchdog_begin(COMM_WATCHDOG_BUS, 7);
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   comm_watchdog_reset();
   EXPECT_FALSE(comm_watchdog_is_on() || stops_at(30000));
 }
@@ -148,9 +148,9 @@ TEST_F(CommWatchdog, OnlyThePortThatStartedCounts) {
 TEST_F(CommWatchdog, ItEndsWithThePowerStage) {
   start(kMine);
   run(10);
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   run(10);
-  inside::state() = DRIVE_RUN;  // started by someone else, without it
+  inside::be_in(DRIVE_RUN);  // started by someone else, without it
   run(5000);
   EXPECT_FALSE(inside::stop_requested());
 }

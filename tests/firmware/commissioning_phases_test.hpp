@@ -24,7 +24,7 @@ class Phases : public Drive {
     NEEDS("commissioning");
     Drive::SetUp();
     make_ready();
-    inside::state() = DRIVE_COMMISSION;
+    inside::be_in(DRIVE_COMMISSION);
     inside::model() = inside::config().nameplate;
     commissioning.model = inside::model();
     inside::link_q16() = raw(kLink, 16);

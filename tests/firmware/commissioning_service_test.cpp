@@ -26,7 +26,7 @@ TEST_F(Phases, WhatIsWorkedOutMeanwhileEndsNothing) {
 TEST_F(Phases, AFaultEndsTheOneThatRunsAlone) {
   commissioning_t& c = commissioning;
   for (const commissioning_outcome_t before : {COMMISSIONING_RUNNING, COMMISSIONING_DONE, COMMISSIONING_ABORTED}) {
-    inside::state() = DRIVE_FAULT;
+    inside::be_in(DRIVE_FAULT);
     c.outcome = before;
     c.phase = COMMISSIONING_SPIN;
     commissioning_service(&drive);

@@ -24,7 +24,7 @@ class CommissioningStairs : public Drive {
     NEEDS("commissioning");
     Drive::SetUp();
     make_ready();
-    inside::state() = DRIVE_COMMISSION;
+    inside::be_in(DRIVE_COMMISSION);
     commissioning.model = nameplate();
     begin();
   }

@@ -20,7 +20,7 @@ class ConsoleHands : public Console {
 
   void SetUp() override {
     Console::SetUp();
-    inside::state() = DRIVE_READY;
+    inside::be_in(DRIVE_READY);
   }
   /// What is said at once to a line that has stood for so many rounds.
   std::string after(const std::string& line, int rounds) {
@@ -34,8 +34,8 @@ class ConsoleHands : public Console {
   void start_hold() {
     (void)command("start hold", 100);
     ASSERT_TRUE(inside::start_requested());
-    inside::withdraw_start();
-    inside::state() = DRIVE_RUN;
+    inside::withdraw_state();
+    inside::be_in(DRIVE_RUN);
     run(300);
   }
   void serial_break() {
@@ -59,7 +59,7 @@ TEST_F(ConsoleHands, ALineThatWasLeftDoesNotStartTheMotor) {
 
 TEST_F(ConsoleHands, ASpeedExpiresWhileTheMotorRunsUnlessItIsZero) {
   EXPECT_TRUE(has(after("ref 50", kLong), "ref 50.00 rpm")) << "nothing moves yet";
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   EXPECT_TRUE(has(after("ref 60", kLong), "typed over 5 s ago"));
   EXPECT_EQ(drive_commanded_speed(), 50 * 65536);
   EXPECT_TRUE(has(after("ref 0", kLong), "ref 0.00 rpm"));
@@ -67,7 +67,7 @@ TEST_F(ConsoleHands, ASpeedExpiresWhileTheMotorRunsUnlessItIsZero) {
 
 TEST_F(ConsoleHands, ALookExpiresWhileTheMotorRuns) {
   NEEDS("start/flying");
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   EXPECT_TRUE(has(after("look", kLong), "typed over 5 s ago"));
 }
 
@@ -76,7 +76,7 @@ TEST_F(ConsoleHands, OtherLinesNeverExpire) {
   EXPECT_TRUE(has(after("get speed_ramp", kLong), "speed_ramp = "));
   EXPECT_TRUE(has(after("set speed_ramp 250", 20 * kLong), "speed_ramp = 250 rpm/s"));
   EXPECT_TRUE(has(after("commission results", kLong), "commissioning: not yet"));
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   EXPECT_TRUE(has(after("stop", kLong), "stopping"));
   EXPECT_TRUE(inside::stop_requested());
 }
@@ -201,8 +201,8 @@ TEST_F(ConsoleHands, FreeSaysWhatItMeans) {
       has(command("start free", 100), "free: nobody watches; it runs until 'stop', even without this terminal"));
   EXPECT_TRUE(inside::start_requested());
   EXPECT_FALSE(comm_watchdog_is_on());
-  inside::withdraw_start();
-  inside::state() = DRIVE_RUN;
+  inside::withdraw_state();
+  inside::be_in(DRIVE_RUN);
   run(100000);
   EXPECT_FALSE(inside::stop_requested()) << "and means it";
 }
@@ -273,7 +273,7 @@ TEST_F(ConsoleHands, TheSpaceBarHoldsAndNothingElse) {
 
 TEST_F(ConsoleHands, ASpaceIsASpaceWhenNobodyHolds) {
   (void)command("start free", 100);
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   send("watch\r");
   run(300);
   text.clear();
@@ -291,8 +291,8 @@ TEST_F(ConsoleHands, RecordsOfASessionGuardABareStart) {
   (void)ask(REQUEST_STATUS, kSession);
   EXPECT_EQ(command("start", 100), "");
   EXPECT_TRUE(inside::start_requested());
-  inside::withdraw_start();
-  inside::state() = DRIVE_RUN;
+  inside::withdraw_state();
+  inside::be_in(DRIVE_RUN);
   for (int k = 0; k < 30; ++k) {
     (void)ask(REQUEST_STATUS, kSession);
     run(5000);
@@ -327,7 +327,7 @@ TEST_F(ConsoleHands, WhoLeavesMayLetGoOfAMotorThatRuns) {
 // What others hold they let go of themselves; the answer says so.
 TEST_F(ConsoleHands, NobodyLetsGoOfWhatTheBusOrTheSwitchHolds) {
   const std::string others = "the CAN bus or the board's switch holds the motor: nothing changed\r\n";
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   comm_watchdog_begin(COMM_WATCHDOG_BUS, 7);
   EXPECT_EQ(command("start free", 100), others);
   EXPECT_TRUE(comm_watchdog_is_on());

@@ -32,7 +32,7 @@ class ConsoleLines : public Console {
   static long lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
   static void at_work() {
-    inside::state() = DRIVE_RUN;
+    inside::be_in(DRIVE_RUN);
     inside::selected().speed_bpp = (bpp_of(600) + bpp_of(601)) / 2;
     inside::command_rpm_q16() = raw(-712.3, 16);
     inside::link_q16() = raw(287.6, 16);
@@ -102,7 +102,7 @@ TEST_F(ConsoleLines, FaultsWithTheirCircumstances) {
   inside::time_ms() = 5067;
   drive_trip(&drive, FAULT_LINK_LOW);
   at_work();
-  inside::state() = DRIVE_STOP;
+  inside::be_in(DRIVE_STOP);
   inside::time_ms() = 65407;
   drive_trip(&drive, FAULT_OVERRUN);
   run(10);  // nobody types yet: it is not told

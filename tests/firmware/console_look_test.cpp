@@ -4,6 +4,7 @@
 #include "tests/firmware/console.hpp"
 
 extern "C" {
+#include "estimators/wiring.h"
 #include "firmware/can/command.h"
 #include "firmware/can/messages.h"
 #include "firmware/can/node.h"
@@ -24,7 +25,7 @@ using namespace stillspin::test;
 TEST_F(Console, StatusAndFaults) {
   EXPECT_EQ(command("faults"), "no fault since power-on\r\n");
   EXPECT_EQ(command("reset"), "no fault is latched\r\n");
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::time_ms() += 12000;
   drive_trip(&drive, FAULT_SYNCHRONISM);
   const std::string faults = command("faults");
@@ -41,9 +42,9 @@ TEST_F(Console, StatusAndFaults) {
 
 TEST_F(Console, StatusSaysWhatHoldsTheDriveBack) {
   inside::limits() = LIMIT_CURRENT;
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   EXPECT_TRUE(has(command("status"), "limits      none\r\n")) << "of when the power stage was on";
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   EXPECT_TRUE(has(command("status"), "limits      current limit\r\n"));
   inside::limits() = LIMIT_VOLTAGE | LIMIT_BRAKING;
   EXPECT_TRUE(has(command("status"), "limits      voltage limit, braking reduced by the DC link\r\n"));
@@ -51,11 +52,11 @@ TEST_F(Console, StatusSaysWhatHoldsTheDriveBack) {
 
 TEST_F(Console, StatusSaysHowFarAProcedureIs) {
   NEEDS("commissioning");
-  inside::state() = DRIVE_COMMISSION;
+  inside::be_in(DRIVE_COMMISSION);
   commissioning.phase = COMMISSIONING_SPIN;
   inside::start_phase() = START_CHARGE;
   EXPECT_TRUE(has(command("status"), "state       commissioning: spin: flux linkage, inertia, friction\r\n"));
-  inside::state() = DRIVE_START;
+  inside::be_in(DRIVE_START);
   EXPECT_TRUE(has(command("status"), "state       starting: charging the bootstrap capacitors\r\n"));
 }
 
@@ -79,14 +80,14 @@ TEST_F(Console, Signals) {
   for (std::uint16_t k = 0; k < signal_count(); ++k) {
     EXPECT_EQ(has(all, bench::text_of(signal_info(k)->name) + ' '), !signal_is_left_out(k));
   }
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::selected().speed_bpp = (bpp_of(600) + bpp_of(601)) / 2;
   EXPECT_TRUE(has(command("signals mechanical"), "600.50 rpm"));
 }
 
 // With the power stage off the estimators go on, and what they make of nothing is no speed.
 TEST_F(Console, WhatIsUnknownIsSaidInWords) {
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   inside::selected().speed_bpp = bpp_of(25);
   inside::current_dq_q20() = {1 << 20, -5 * (1 << 20)};
   inside::command_rpm_q16() = 600 * 65536;
@@ -108,7 +109,7 @@ TEST_F(Console, WhatIsUnknownIsSaidInWords) {
 }
 
 TEST_F(Console, WatchGoesOnUntilAKey) {
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   send("watch\r");
   run(16000);
   EXPECT_TRUE(has(text, "running   0.0 rpm of 0.0 rpm"));
@@ -121,7 +122,7 @@ TEST_F(Console, WatchGoesOnUntilAKey) {
 }
 
 TEST_F(Console, WatchShowsTheSignalsThatAreNamed) {
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::current_dq_q20() = {1 << 20, -5 * (1 << 20)};
   EXPECT_EQ(command("watch current_q", 300), "current_q -5.000 A\r\n");
   EXPECT_TRUE(
@@ -130,33 +131,33 @@ TEST_F(Console, WatchShowsTheSignalsThatAreNamed) {
 }
 
 TEST_F(Console, WatchShowsFourSignalsAtMost) {
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   EXPECT_TRUE(has(command("watch state fault limit speed", 300), "state 4   fault 0   limit 0   speed 0.00 rpm\r\n"));
   EXPECT_TRUE(has(command("watch state fault limit speed angle", 300), "at most four signals"));
 }
 
 TEST_F(Console, WatchSaysWhatHoldsTheDriveBack) {
   EXPECT_FALSE(has(command("watch", 300), " V   "));
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::limits() = LIMIT_CURRENT | LIMIT_WEAKENING;
   EXPECT_TRUE(has(command("watch", 300), " V   current limit, field weakening\r\n"));
 }
 
 TEST_F(Console, ALineThatHasNoRoomForAllOfItSaysSo) {
   NEEDS("commissioning");
-  inside::state() = DRIVE_COMMISSION;
+  inside::be_in(DRIVE_COMMISSION);
   commissioning.phase = COMMISSIONING_STAIRCASE;
   inside::limits() = LIMIT_CURRENT | LIMIT_VOLTAGE | LIMIT_WEAKENING | LIMIT_OVERRUN | LIMIT_BRAKING;
   const std::string line = command("watch", 300);
   EXPECT_EQ(line.size(), TEXT_LINE_MAX);
   EXPECT_EQ(line.substr(line.size() - 5), "...\r\n");
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   EXPECT_FALSE(has(command("watch", 300), "..."));
 }
 
 TEST_F(Console, StatusNamesTheWiringBehindItsFault) {
   NEEDS("start/flying");
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   drive_trip(&drive, FAULT_OPEN_PHASE);
   inside::wiring() = WIRING_OPEN_B;
   const std::string named = command("status");
@@ -183,7 +184,7 @@ TEST_F(Console, Commissioning) {
   EXPECT_EQ(command("commission results"), "commissioning: not yet\r\n");
   EXPECT_TRUE(has(command("commission now"), "commission start"));
   EXPECT_TRUE(has(command("commission start free"), "not ready"));
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   EXPECT_TRUE(has(command("commission start free"), "the shaft will turn"));
   ASSERT_NE(inside::state_requested(), nullptr);
   EXPECT_EQ(inside::state_requested()->state, DRIVE_COMMISSION);
@@ -251,7 +252,7 @@ TEST_F(Console, WhoCommandsOverTheBus) {
     board.can_in[0].push_back(f);
     can_node_service();
   };
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   come(CAN_MODE_OFF);
   EXPECT_TRUE(has(command("can"), "commands    received, but the drive was not started by them\r\n"));
   come(CAN_MODE_RUN);

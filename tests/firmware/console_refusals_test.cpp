@@ -92,7 +92,7 @@ TEST_F(Refusals, EveryWayToSayNoIsOne) {
 }
 
 TEST_F(Refusals, WhatTheDriveDoesNotDoNowIsOne) {
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   for (const char* line : {"set speed_limit 1000", "load", "defaults", "start hold", "commission start"}) {
     EXPECT_EQ(of(line), 1) << line << ": " << text;
   }
@@ -110,7 +110,7 @@ TEST_F(Refusals, ASaveThatFailsIsOne) {
 }
 
 TEST_F(Refusals, AStartThatEndsInAFaultIsOne) {
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   const std::uint16_t before = feature_status.refusals;
   send("start free\r");
   run(100);

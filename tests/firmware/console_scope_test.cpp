@@ -53,7 +53,7 @@ TEST_F(ConsoleScope, TheScopeFromWordsToNumbers) {
                   "channels speed current_q angle\r\n"
                   "trigger speed rising 100.00 rpm, every 2, before 10, mode single"));
   EXPECT_TRUE(has(command("scope arm"), "armed"));
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   for (int k = 0; k < 3000; ++k) {
     inside::selected().speed_bpp = bpp_of(k);
     inside::current_dq_q20().q = -5 * (1 << 20);
@@ -66,7 +66,7 @@ TEST_F(ConsoleScope, TheScopeFromWordsToNumbers) {
   EXPECT_TRUE(has(rows, "\n10    10")) << rows.substr(0, 300);
   EXPECT_TRUE(has(rows, "-5.000      0.2500"));
   EXPECT_TRUE(has(command("scope arm"), "armed"));
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   for (int k = 0; k < 20; ++k)
     if (drive_onlooker != nullptr) drive_onlooker();
   EXPECT_TRUE(has(command("scope stop"), "stopped"));
@@ -90,7 +90,7 @@ TEST_F(ConsoleScope, AStepOfARecordMayBeMoreThanOne) {
   EXPECT_TRUE(has(command("scope channels deviation_q"), "set"));
   EXPECT_TRUE(has(command("scope trigger now"), "set"));
   EXPECT_TRUE(has(command("scope arm"), "armed"));
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::deviation_q20() = -(9 << 20);  // in a period of 100 us
   steps(2000);
   EXPECT_TRUE(has(command("scope print 500", 2000), "\n500   -90000.0"));
@@ -196,7 +196,7 @@ TEST_F(ConsoleScope, WhatCanBePrinted) {
 // A machine at the other end, or in AUTO mode the reading itself, may arm it meanwhile.
 TEST_F(ConsoleScope, APrintEndsWhenTheScopeIsArmedAgain) {
   (void)command("scope channels state");
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   (void)command("scope arm");
   steps(2000);
   send("scope print 1\r");

@@ -64,7 +64,7 @@ TEST_F(Console, WhatIsRefusedIsExplained) {
   EXPECT_TRUE(has(command("set speed_limit"), "set name value [unit]"));
   EXPECT_TRUE(has(command("set speed_limit 1 000 rpm"), "speed_limit = 1 000 rpm is not a number"));
   EXPECT_EQ(parameters.speed_limit, 3300 * 256);
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   EXPECT_EQ(command("set speed_limit 1000"),
             "speed_limit may not change while the power stage is on: stop the drive first\r\n");
 }
@@ -137,7 +137,7 @@ TEST_F(Console, List) {
 
 TEST_F(Console, StartRefStop) {
   EXPECT_TRUE(has(command("start free"), "not ready yet"));
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   EXPECT_EQ(command("ref 600 rpm"), "ref 600.00 rpm\r\n");
   EXPECT_EQ(command("ref -50rpm"), "ref -50.00 rpm\r\n");
   EXPECT_EQ(command("ref"), "ref -50.00 rpm\r\n");
@@ -150,18 +150,18 @@ TEST_F(Console, StartRefStop) {
   run(300);
   EXPECT_TRUE(inside::start_requested());
   text.clear();
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   run(100);
   EXPECT_TRUE(has(text, "running after 3")) << text;
   EXPECT_EQ(command("stop at once please"), "stopping\r\n");
   EXPECT_TRUE(inside::stop_requested());
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   EXPECT_EQ(command("stop"), "the power stage is off\r\n");
   EXPECT_EQ(command("coast"), "power stage off\r\n");
 }
 
 TEST_F(Console, StartAndResetStandAlone) {
-  inside::state() = DRIVE_FAULT;
+  inside::be_in(DRIVE_FAULT);
   EXPECT_EQ(command("reset now"), "this command takes nothing after it: nothing done\r\n");
   EXPECT_FALSE(inside::reset_requested());
   EXPECT_TRUE(has(command("reset"), "cleared"));
@@ -178,7 +178,7 @@ TEST_F(Console, WordsBeyondTheLastAreLeftOut) {
 }
 
 TEST_F(Console, AStartThatTakesLongIsLeftToItself) {
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   send("start free\r");
   run(100);
   inside::time_ms() += 4900;
@@ -190,7 +190,7 @@ TEST_F(Console, AStartThatTakesLongIsLeftToItself) {
 }
 
 TEST_F(Console, WaitingForTheStartEndsWithAnyKey) {
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   send("start free\rstop\r");
   run(500);
   EXPECT_TRUE(inside::stop_requested());
@@ -198,27 +198,27 @@ TEST_F(Console, WaitingForTheStartEndsWithAnyKey) {
 }
 
 TEST_F(Console, AFaultIsToldUnaskedToWhoTypes) {
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   drive_trip(&drive, FAULT_STOP);
   run(100);
   EXPECT_EQ(text, "") << "nobody is there";
   send("sta");
   run(100);
   text.clear();
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   drive_trip(&drive, FAULT_LINK_LOW);
   run(300);
   EXPECT_TRUE(has(text, "! fault: DC link below link_minimum\r\n")) << text;
   EXPECT_TRUE(has(text, "\r> sta")) << "what has been typed is still there";
   (void)ask(REQUEST_STATUS);
   text.clear();
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   drive_trip(&drive, FAULT_LINK_HIGH);
   run(300);
   EXPECT_TRUE(has(text, "! fault: DC link above")) << "a terminal that keeps the watchdog alive is still one: " << text;
   (void)ask(REQUEST_IDENTITY);
   text.clear();
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   drive_trip(&drive, FAULT_LINK_LOW);
   run(300);
   EXPECT_EQ(text, "") << "a machine is there";
@@ -226,7 +226,7 @@ TEST_F(Console, AFaultIsToldUnaskedToWhoTypes) {
 
 TEST_F(Console, AFaultThatIsForgottenIsNotTold) {
   send("x");
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   drive_trip(&drive, FAULT_LINK_LOW);
   run(300);
   ASSERT_TRUE(has(text, "! fault"));
@@ -246,7 +246,7 @@ TEST_F(Console, SaveLoadDefaults) {
   EXPECT_EQ(parameters.speed_ramp, 3000 * 256);
   EXPECT_TRUE(has(command("load", 20000), "the saved values are in force"));
   EXPECT_EQ(parameters.speed_ramp, 250 * 256);
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   EXPECT_TRUE(has(command("load"), "stop the drive first"));
   EXPECT_TRUE(has(command("defaults"), "stop the drive first"));
   EXPECT_TRUE(has(command("save", 20000), "the values have been saved")) << "while it runs, too";
@@ -298,7 +298,7 @@ TEST_F(Console, WhatIsTypedAheadIsNotLost) {
 }
 
 TEST_F(Console, ToStopDoesNotWaitForTheEndOfALongAnswer) {
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   send("list\rref 70\r");
   run(200);
   send("stop\r\n");
@@ -312,7 +312,7 @@ TEST_F(Console, ToStopDoesNotWaitForTheEndOfALongAnswer) {
 // A terminal that ends its lines with a line feed stops the motor as soon as any.
 TEST_F(Console, EitherEndOfALineStopsInTheMiddleOfAnAnswer) {
   for (const char* end : {"\r", "\n"}) {
-    inside::state() = DRIVE_RUN;
+    inside::be_in(DRIVE_RUN);
     inside::withdraw_stop();
     send("list\r");
     run(200);
@@ -344,7 +344,7 @@ TEST_F(Console, RecordsAreAnsweredInTheMiddleOfALongAnswer) {
 }
 
 TEST_F(Console, ADisturbedLineIsNotObeyed) {
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   send("set speed_ramp 1");
   run(50);
   board.serial_errors.framing++;

@@ -51,7 +51,7 @@ class Exchange : public Drive {
     const dq_t& wanted = inside::reference_dq_q20();
     return {inside::state(),
             inside::fault(),
-            inside::limits(),
+            inside::all_limits(),
             wanted.d,
             wanted.q,
             inside::selected().angle_bam,

@@ -117,13 +117,13 @@ inline std::int32_t bpp_of(int rpm) {
 
 /// What the exchange of the configuration gives the interrupts of the parameters as they are, at once.
 inline void use_parameters() {
-#define USE(name) inside::config().values.name = parameters.name;
-  CONFIG_VALUES(USE)
-#undef USE
+#define CONFIG_VALUE(name) inside::config().values.name = parameters.name;
+#include "firmware/interfaces/all_config_values.h"
+#undef CONFIG_VALUE
   drive_config_t beside = inside::config();  // a part may change what the drive's own parameters have made
   for (const config_part_t* const* part = edition_config_parts; *part != nullptr; ++part) {
     const bool fits = (*part)->make == nullptr || (*part)->make(&beside) == PACKED_NONE;
-    if (fits) (*part)->take();
+    if (fits && (*part)->take != nullptr) (*part)->take();
   }
 }
 

@@ -84,7 +84,7 @@ TEST_F(Drive, LateInterruptsRepeatThePatternAndFaultInTheEnd) {
   for (int n = 0; n < 8; ++n) period();
   EXPECT_EQ(inside::state(), DRIVE_RUN);
   EXPECT_EQ(board.frames, frames);
-  EXPECT_NE(inside::limits() & LIMIT_OVERRUN, 0);
+  EXPECT_NE(inside::modulation_limits() & LIMIT_OVERRUN, 0);
   for (int n = 0; n < 5; ++n) period();
   expect_fault(FAULT_OVERRUN);
 }
@@ -137,7 +137,7 @@ TEST_F(Drive, FaultStaysUntilTheReset) {
 TEST_F(Drive, ACaughtRotorWithoutAnAxisIsAFault) {
   NEEDS("start/flying");
   make_run();
-  inside::state() = DRIVE_START;
+  inside::be_in(DRIVE_START);
   starting = {};
   inside::is_caught() = true;
   inside::start_phase() = START_CATCH;

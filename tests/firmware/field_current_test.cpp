@@ -38,21 +38,20 @@ TEST_F(SpeedTask, WeakeningSeesWhatTheModulatorHas) {
   }
 }
 
-// In START nothing is weakened, but for a shaft that has been caught.
+// A start weakens the field of the shaft that it has caught itself (start_caught_frame_test.cpp).
 TEST_F(SpeedTask, WeakeningIsForAShaftThatTurns) {
-  const auto sees = [&](drive_state_t state, bool caught) {
-    inside::state() = state;
-    inside::is_caught() = caught;
+  const auto sees = [&](drive_state_t state) {
+    inside::be_in(state);
+    inside::is_caught() = state == DRIVE_START;
     constexpr std::int32_t kMark = 77;
     inside::weakening_q20() = kMark;
     part(TASK_FIELD);
     return inside::weakening_q20() != kMark;
   };
-  EXPECT_TRUE(sees(DRIVE_RUN, false));
-  EXPECT_TRUE(sees(DRIVE_STOP, false));
-  EXPECT_TRUE(sees(DRIVE_START, true));
-  EXPECT_FALSE(sees(DRIVE_START, false));
-  EXPECT_FALSE(sees(DRIVE_READY, false));
+  EXPECT_TRUE(sees(DRIVE_RUN));
+  EXPECT_TRUE(sees(DRIVE_STOP));
+  EXPECT_FALSE(sees(DRIVE_START));
+  EXPECT_FALSE(sees(DRIVE_READY));
 }
 
 // What weakening and maximum torque per ampere ask for, whichever is more, and what is wanted at low speed on top,
@@ -84,7 +83,7 @@ TEST_F(SpeedTask, TheFieldCurrentIsTheLeastOfItsReasons) {
   for (const Case& c : cases) {
     parameters.mtpa = c.mtpa;
     use_parameters();
-    inside::state() = c.state;
+    inside::be_in(c.state);
     inside::spins() = true;
     inside::blend_region() = c.region;
     inside::weakening_q20() = raw(c.weakening, 20);

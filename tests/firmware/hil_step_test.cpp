@@ -234,7 +234,7 @@ TEST_F(Stepping, WindowsComeWhereTheyCame) {
 
 // A host with another compiler has to find the same number.
 TEST_F(Stepping, TheCheckSumIsOverEverySignalInItsOrder) {
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   inside::current_dq_q20() = {-1, 0x12345678};
   inside::command_dq_q16() = {INT32_MIN, 77};
   inside::low_speed_estimate().angle_bam = 0x89ABCDEF;

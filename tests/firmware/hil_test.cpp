@@ -167,7 +167,7 @@ TEST_F(HostInTheLoop, AStepThatComesAgainIsAnsweredAgainAndNotCarriedOut) {
   const Answer once = give_step(1);
   ASSERT_EQ(once.status(), OK);
   inside::fault() = FAULT_LINK_LOW;  // were it carried out, the step would see to that
-  inside::state() = DRIVE_FAULT;
+  inside::be_in(DRIVE_FAULT);
   const std::uint32_t crc = hil_signals_crc();
   const Answer again = give_step(1);
   EXPECT_EQ(again.status(), OK);

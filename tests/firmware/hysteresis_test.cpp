@@ -336,7 +336,7 @@ TEST_F(Hysteresis, PulsesBeginWithoutOldWindows) {
   inside::sliced() = 0;
   for (int n = 0; n < 2; ++n) drive_window_interrupt();
   (void)control_step();
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   EXPECT_FALSE(control_step());
   EXPECT_EQ(sampling_swap()->count, 0);
   EXPECT_EQ(sampling_swap()->count, 0);
@@ -370,7 +370,7 @@ TEST_F(Hysteresis, SpaceVectorsHaveTheOtherStatesAndTheOtherLaw) {
       SetUp();
       parameters.current_law = law;
       use_parameters();
-      inside::state() = state;
+      inside::be_in(state);
       const bool wanted = law == 1 && (state == DRIVE_RUN || state == DRIVE_STOP);
       EXPECT_EQ(control_step(), wanted) << law << state;
       EXPECT_EQ(board.slice_ticks, wanted ? 500 : 0);

@@ -26,7 +26,10 @@ inline auto& estimate() { return drive.estimate; }
 inline auto& fault() { return drive.fault; }
 inline auto& heartbeat() { return drive.heartbeat; }
 int32_t& heat_sink_q8();  // board_derating_test.cpp
+// Of current and speed, of voltage and time, and as the signal has them.
 inline auto& limits() { return drive.control.limits; }
+inline auto& modulation_limits() { return drive.modulation.limits; }
+inline int all_limits() { return drive.control.limits | drive.modulation.limits; }
 inline auto& loading() { return feature_status.loading; }
 inline auto& model() { return drive.estimate.model; }
 inline auto& periods() { return drive.periods; }
@@ -37,24 +40,25 @@ inline auto& settled_at() { return drive.settled_at; }
 inline auto& sliced() { return drive.modulation.sliced; }
 inline auto& source() { return drive.source; }
 inline auto& start_found() { return starting; }
-inline auto& state() { return drive.state; }
+inline drive_state_t state() { return drive.state; }
+/// As the states themselves do, whatever it was in before: no flags, the first period.
+inline void be_in(drive_state_t state) { drive_enter(&drive, state); }
 inline auto& supervision() { return drive.supervision; }
 inline auto& time_ms() { return drive.time_ms; }
-inline auto& wiring() { return drive.wiring; }
+inline auto& wiring() { return feature_status.wiring; }
 inline auto& zero_current_a_q8() { return drive.zero_current_a_q8; }
 inline auto& zero_current_b_q8() { return drive.zero_current_b_q8; }
 
 // What has been asked for, and not been carried out.
-inline bool start_requested() { return drive.request.start; }
+inline bool start_requested() { return drive_start_is_asked(); }
 inline bool stop_requested() { return drive.request.stop; }
 inline bool coast_requested() { return drive.request.coast; }
 inline bool reset_requested() { return drive.request.reset; }
 inline bool reload_requested() { return drive.request.reload; }
-/// A feature's state in the place of a start; null for none.
+/// What is to begin: a start, or a feature's state in its place; null for none.
 inline const state_request_t* state_requested() { return drive.request.begin; }
 // In the place of who asks, and of who carries it out.
 inline void request_reload() { drive.request.reload = true; }
-inline void withdraw_start() { drive.request.start = false; }
 inline void withdraw_stop() { drive.request.stop = false; }
 inline void withdraw_reload() { drive.request.reload = false; }
 inline void withdraw_state() { drive.request.begin = nullptr; }
@@ -131,7 +135,7 @@ inline auto& reference_dq_q20() { return drive.control.references.current_q20; }
 inline auto& speed_controller() { return drive.control.speed; }
 inline auto& speed_ramp() { return drive.control.ramp; }
 inline auto& speed_ready() { return drive.control.speed_ready; }
-inline auto& spin_d_q20() { return drive.control.spin_d_q20; }
+inline auto& spin_d_q20() { return drive.control.references.spin_d_q20; }
 inline auto& target_bpp() { return drive.control.target_bpp; }
 inline auto& weakening_q20() { return drive.control.weakening.id_q20; }
 
@@ -160,7 +164,7 @@ inline void protect_step() {
 }
 inline void speed_step() { drive_control_speed(&drive, &drive.control, &drive.estimate); }
 inline void current_step() { drive_control_current(&drive, &drive.control); }
-inline void modulate_step() { drive_modulate(&drive, &drive.modulation, &drive.control); }
+inline void modulate_step() { drive_modulate(&drive, &drive.modulation, &drive.control.current); }
 inline void match_inertia() { drive_match_inertia(&drive, &drive.estimate, &drive.control.speed); }
 
 // Where the estimators begin.

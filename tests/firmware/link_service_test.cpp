@@ -82,7 +82,7 @@ TEST_F(LinkService, AnEventLeavesRoomForAnAnswerAndALine) {
   const std::uint16_t place = 9;
   const int event = 2 + 2 + 4 + 4 + 1 + 2 + 1;  // zeros, type and counter, time, value, known, CRC, COBS
   const int longest_event = event + 4 * (int(STREAM_SIGNALS) - 1);
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::current_dq_q20().d = 0x01010101;
   stream_setup(COMM_WATCHDOG_SERIAL, 5, &place, 1);
   const auto sends_after = [&](unsigned ms, int missing) {

@@ -121,7 +121,7 @@ class LookAsked : public Requests {
     NEEDS("start/flying");
     Requests::SetUp();
     inside::loading() = false;
-    inside::state() = DRIVE_READY;
+    inside::be_in(DRIVE_READY);
     run(10);
   }
   static void show(look_outcome_t outcome, int rpm) {
@@ -160,7 +160,7 @@ TEST_F(LookAsked, OneThatWasBrokenOffHasNoSpeed) {
 TEST_F(LookAsked, IsRefusedWhereAStartIs) {
   EXPECT_NE(command("look twice"), "");
   EXPECT_EQ(inside::state_requested(), nullptr) << "it has no arguments";
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   EXPECT_NE(command("look").find("busy"), std::string::npos);
   EXPECT_EQ(inside::state_requested(), nullptr);
 }

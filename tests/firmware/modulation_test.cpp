@@ -27,14 +27,14 @@ class Modulation : public Drive {
   void SetUp() override {
     Drive::SetUp();
     make_ready();
-    inside::state() = DRIVE_RUN;
+    inside::be_in(DRIVE_RUN);
     polarity_watch.open = false;
     inside::loop_is_closed() = true;
     inside::link_q16() = raw(300.0, 16);
     inside::selected() = {bam(0.3), raw(0.12 / kTurn, 32), 0, 32767};
     inside::command_dq_q16() = raw_dq({20.0, 35.0}, 16);
     inside::current_dq_q20() = raw_dq({1.5, -4.0}, 20);
-    inside::limits() = 0;
+    inside::modulation_limits() = 0;
   }
   /// The pulses of this excitation, and whether they are those that the drive makes.
   static bool modulates_as(excitation_t excitation) {
@@ -102,7 +102,7 @@ TEST_F(Modulation, TheFrameIsThePatternsWithItsEdgesAdvanced) {
 TEST_F(Modulation, ItsStepSaysWhatItTakes) {
   for (const bool shorted : {false, true}) {
     board.profile.clear();
-    inside::state() = DRIVE_START;
+    inside::be_in(DRIVE_START);
     inside::is_shorted() = shorted;
     inside::modulate_step();
     EXPECT_EQ(spent(), CYCLES_MODULATE);
@@ -118,30 +118,34 @@ TEST_F(Modulation, AFrameThatIsLateLeavesThePatternThatRuns) {
   for (int n = 1; n < 4; ++n) {
     inside::modulate_step();
     EXPECT_EQ(inside::overruns(), n);
-    EXPECT_EQ(inside::limits() & LIMIT_OVERRUN, LIMIT_OVERRUN);
+    EXPECT_EQ(inside::modulation_limits() & LIMIT_OVERRUN, LIMIT_OVERRUN);
     EXPECT_EQ(std::memcmp(&first, &inside::running_pattern(), sizeof first), 0);
     EXPECT_EQ(std::memcmp(&first, &inside::sampled_pattern(), sizeof first), 0);
   }
   board.late = false;
-  inside::limits() = 0;
+  inside::modulation_limits() = 0;
   inside::modulate_step();
   EXPECT_EQ(inside::overruns(), 0) << "in a row";
-  EXPECT_EQ(inside::limits() & LIMIT_OVERRUN, 0);
+  EXPECT_EQ(inside::modulation_limits() & LIMIT_OVERRUN, 0);
   EXPECT_EQ(std::memcmp(&first, &inside::sampled_pattern(), sizeof first), 0);
   EXPECT_NE(std::memcmp(&first, &inside::running_pattern(), sizeof first), 0);
 }
 
-// A frame that is late, or a voltage that the link has not, is told beside the other limits.
-TEST_F(Modulation, ALimitIsToldBesideTheOthers) {
-  board.late = true;
+// A frame that is late, or a voltage that the link has not, is told until the next millisecond begins, beside the
+// speed control's limits.
+TEST_F(Modulation, ALimitIsToldForItsMillisecond) {
   inside::limits() = LIMIT_CURRENT | LIMIT_BRAKING;
+  inside::scheduled_task() = TASK_SLOT;
+  board.late = true;
   inside::modulate_step();
-  EXPECT_EQ(inside::limits(), LIMIT_CURRENT | LIMIT_BRAKING | LIMIT_OVERRUN);
+  EXPECT_EQ(inside::all_limits(), LIMIT_CURRENT | LIMIT_BRAKING | LIMIT_OVERRUN);
   board.late = false;
-  inside::limits() = LIMIT_CURRENT | LIMIT_WEAKENING;
   inside::command_dq_q16() = raw_dq({-150.0, 250.0}, 16);
   inside::modulate_step();
-  EXPECT_EQ(inside::limits(), LIMIT_CURRENT | LIMIT_WEAKENING | LIMIT_VOLTAGE);
+  EXPECT_EQ(inside::all_limits(), LIMIT_CURRENT | LIMIT_BRAKING | LIMIT_OVERRUN | LIMIT_VOLTAGE);
+  inside::scheduled_task() = TASK_SPEED;
+  inside::modulate_step();
+  EXPECT_EQ(inside::all_limits(), LIMIT_CURRENT | LIMIT_BRAKING | LIMIT_VOLTAGE);
 }
 
 // The excess that the link cannot give comes off the integrators, along the axes in which it was asked.
@@ -155,7 +159,7 @@ TEST_F(Modulation, AVoltageThatTheLinkHasNotComesOffTheIntegrators) {
     c.d.integral_q20 = raw(-150.0, 20);
     c.q.integral_q20 = raw(250.0, 20);
     inside::modulate_step();
-    EXPECT_EQ(inside::limits() & LIMIT_VOLTAGE, closed ? LIMIT_VOLTAGE : 0);
+    EXPECT_EQ(inside::modulation_limits() & LIMIT_VOLTAGE, closed ? LIMIT_VOLTAGE : 0);
     const double d = real(c.d.integral_q20, 20) + 150.0, q = real(c.q.integral_q20, 20) - 250.0;
     if (closed) {
       EXPECT_GT(d, 1.0);
@@ -197,7 +201,7 @@ TEST_F(Modulation, AStartAndACommissioningLiveOnOppositeVectors) {
       SetUp();
       parameters.excitation = asked;
       use_parameters();
-      inside::state() = state;
+      inside::be_in(state);
       inside::is_shorted() = false;
       const bool own = state == DRIVE_START || state == DRIVE_COMMISSION;
       EXPECT_TRUE(modulates_as(own ? EXCITATION_CHEAPEST : static_cast<excitation_t>(asked))) << asked << state;

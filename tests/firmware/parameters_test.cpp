@@ -184,7 +184,7 @@ TEST_F(Parameters, RefusedWhileEnergised) {
                                DRIVE_RUN,  DRIVE_STOP,      DRIVE_FAULT};
   for (const drive_state_t state : all) {
     const bool energised = state == DRIVE_START || state == DRIVE_RUN || state == DRIVE_STOP;
-    stillspin::test::inside::state() = state;
+    stillspin::test::inside::be_in(state);
     EXPECT_EQ(drive_is_energised(), energised) << state;
     for (const Row& r : kRows) {
       const parameter_info_t* const info = parameter_info(static_cast<std::uint16_t>(&r - kRows.data()));

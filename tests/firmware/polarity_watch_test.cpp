@@ -24,7 +24,7 @@ class PolarityWatch : public Drive {
     parameters.polarity_check = 1;
     use_parameters();
     make_ready();
-    inside::state() = DRIVE_RUN;
+    inside::be_in(DRIVE_RUN);
     inside::window_count() = 2;
     inside::current_dq_q20() = {0, 0};
     polarity_watch_begin(bam(0.5), 0);
@@ -149,9 +149,9 @@ TEST_F(PolarityWatch, BlindItTakesTheAngleInUse) {
 // It sleeps but in RUN, until its question is answered, and where nobody asks it.
 TEST_F(PolarityWatch, IsAwakeInRunUntilItKnows) {
   EXPECT_TRUE(polarity_watch_is_awake(&drive));
-  inside::state() = DRIVE_STOP;
+  inside::be_in(DRIVE_STOP);
   EXPECT_FALSE(polarity_watch_is_awake(&drive));
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   parameters.polarity_check = 0;
   use_parameters();
   polarity_watch_begin(0, 0);

@@ -25,7 +25,7 @@ class Position : public Drive {
     make_ready();
     use_source(source);
     ASSERT_TRUE(drive_config_load(&inside::config()));
-    inside::state() = DRIVE_RUN;
+    inside::be_in(DRIVE_RUN);
     inside::is_scheduled_turning() = true;
     polarity_watch.open = false;
     inside::preset(kHere, 0);

@@ -15,13 +15,25 @@ using namespace stillspin::test;
 // The spin of a commissioning runs on the observer, whatever the source.
 TEST_F(Sources, ACommissioningsSpinRunsOnTheObserver) {
   run_with(POSITION_ENCODER);
-  inside::state() = DRIVE_COMMISSION;
+  inside::be_in(DRIVE_COMMISSION);
   inside::spins() = true;
   inside::observer().angle_bam = kThere;
   encoder.observer.angle_bam = kHere;
   estimate();
   EXPECT_EQ(inside::selected().angle_bam, inside::observer().angle_bam);
   EXPECT_NEAR(rad(inside::selected().angle_bam - kThere), 0.0, 0.01);
+}
+
+// The board's counter is set up for the parameter, once.
+TEST_F(Sources, TheEncodersCounterFollowsItsParameter) {
+  encoder_service();
+  EXPECT_EQ(board.encoder_counts, 4096u);
+  board.encoder_counts = 0;
+  encoder_service();
+  EXPECT_EQ(board.encoder_counts, 0u) << "the count goes on";
+  parameters.encoder_counts = 1000;
+  encoder_service();
+  EXPECT_EQ(board.encoder_counts, 1000u);
 }
 
 // Angle from the count and what was found at the start, speed by a tracking observer; the trim turns the frame alone.

@@ -134,7 +134,7 @@ TEST_F(Sources, WhileAVectorIsTurnedTheSourceLooksOn) {
   for (const bool aligned : {false, true}) {
     run_with(POSITION_OBSERVER);
     see(0);
-    inside::state() = DRIVE_START;
+    inside::be_in(DRIVE_START);
     inside::is_open_loop() = true;
     inside::start_phase() = START_IF_RAMP;
     if_ramp_config.align_periods = 500;
@@ -160,7 +160,7 @@ TEST_F(Sources, AFluxFollowsAVectorUntilItIsUp) {
     run_with(POSITION_FLUX_CONV);
     see(0);
     blend(BLEND_HIGH, 0.0);
-    inside::state() = DRIVE_START;
+    inside::be_in(DRIVE_START);
     inside::is_open_loop() = true;
     inside::start_phase() = START_IF_RAMP;
     if_ramp.tick = if_ramp_config.align_periods = 500;
@@ -184,7 +184,7 @@ TEST_F(Sources, AFluxThatLooksOnKnowsTheCurrentsInItsOwnFrame) {
     run_with(POSITION_FLUX_CONV + FLUX_PP02);
     see(0);
     blend(BLEND_HIGH, 0.0);
-    inside::state() = DRIVE_START;
+    inside::be_in(DRIVE_START);
     inside::is_open_loop() = true;
     inside::start_phase() = START_IF_RAMP;
     if_ramp.tick = if_ramp_config.align_periods;

@@ -97,7 +97,7 @@ TEST_F(Learning, AStartLearnsTheSensorsInTheVoltagesTurn) {
       inside::windows()[k].change_q19.alpha += raw(k == 0 ? 0.06 : -0.06, 19);
       inside::windows()[k].change_q19.beta += raw(k == 0 ? 0.03 : -0.03, 19);
     }
-    inside::state() = DRIVE_START;
+    inside::be_in(DRIVE_START);
     inside::is_scheduled_turning() = false;
     estimate(slot);
     EXPECT_EQ(inverse_inductances(), slot == SLOT_INDUCTANCE) << slot;
@@ -119,7 +119,7 @@ TEST_F(Learning, ACommissioningLearnsWhereItAdapts) {
       learn_with(POSITION_FLUX_CONV);
       see_machine(kHere);
       inside::windows()[0].change_q19.alpha += raw(0.06, 19);
-      inside::state() = DRIVE_COMMISSION;
+      inside::be_in(DRIVE_COMMISSION);
       inside::is_scheduled_turning() = false;
       inside::is_frozen() = !adapting;
       commissioning.predicting = predicting;

@@ -63,7 +63,7 @@ TEST_F(Sources, ABlindStartMeasuresNothing) {
     see(1);
     inside::windows()[0].current_q20 = {raw(1.0, 20), 0};
     inside::current_dq_q20() = {0, 0};
-    inside::state() = DRIVE_START;
+    inside::be_in(DRIVE_START);
     inside::is_scheduled_turning() = false;
     inside::invalid_periods() = invalid;
     estimate();
@@ -96,7 +96,7 @@ TEST_F(Sources, WhileAVectorIsTurnedTheTorqueIsThatOfTheAngleSeen) {
   NEEDS("start/if_start");
   run_with(POSITION_OBSERVER);
   see(0);
-  inside::state() = DRIVE_START;
+  inside::be_in(DRIVE_START);
   inside::is_open_loop() = true;
   inside::start_phase() = START_IF_RAMP;
   inside::seen().angle_bam = kHere + 0x40000000u;  // a quarter turn ahead: i_d is i_q against the rotation there
@@ -113,7 +113,7 @@ TEST_F(Sources, WhileAVectorIsTurnedTheTorqueIsThatOfTheWindowsToo) {
   NEEDS("start/if_start", "sources/flux");
   for (const int source : {POSITION_OBSERVER, POSITION_FLUX_CONV}) {
     run_with(source);
-    inside::state() = DRIVE_START;
+    inside::be_in(DRIVE_START);
     inside::is_open_loop() = true;
     inside::start_phase() = START_IF_RAMP;
     for (int k = 0; k < 2; ++k) inside::windows()[k].current_q20 = raw_ab(Vector{4.0, 0.0}.turned(rad(kHere)), 20);
@@ -131,7 +131,7 @@ TEST_F(Sources, WhileAVectorIsTurnedTheWindowsAreSeenWhereTheSourceWas) {
   double told[2];
   for (const bool measured : {true, false}) {
     run_with(POSITION_OBSERVER);
-    inside::state() = DRIVE_START;
+    inside::be_in(DRIVE_START);
     inside::is_open_loop() = true;
     inside::start_phase() = START_IF_RAMP;
     inside::seen() = {kThere, raw(speed / kTurn, 32), 0, 32767};
@@ -325,7 +325,7 @@ TEST_F(Sources, AnAxisIsLookedForByAvvAlone) {
 TEST_F(Sources, WithTheGatesOffNoEstimatorIsAtWork) {
   for (const bool off : {true, false}) {
     run_with(POSITION_OBSERVER);
-    inside::state() = DRIVE_START;
+    inside::be_in(DRIVE_START);
     inside::is_scheduled_turning() = false;
     inside::gates_off() = off;
     see_machine(kHere);

@@ -206,7 +206,7 @@ TEST_F(Position, TheCurrentIsThatInTheFrameInUse) {
       see(1);
       blend(c.region, c.share);
       inside::windows()[0].current_q20 = {raw(3.0, 20), raw(1.0, 20)};
-      if (starting) inside::state() = DRIVE_START;
+      if (starting) inside::be_in(DRIVE_START);
       inside::is_scheduled_turning() = !starting;
       inside::selected().angle_bam = kThere;
       inside::high_speed_estimate().angle_bam = kHere + 0x01000000u;
@@ -244,7 +244,7 @@ TEST_F(Position, AHeldShaftIsHeldInRunOnly) {
   EXPECT_TRUE(hold_is_on(&drive));
   inside::speed_step();
   EXPECT_EQ(brake_release_hold.left, 99u);
-  inside::state() = DRIVE_STOP;
+  inside::be_in(DRIVE_STOP);
   EXPECT_FALSE(hold_is_on(&drive));
   inside::speed_step();
   EXPECT_EQ(brake_release_hold.left, 99u);

@@ -92,7 +92,7 @@ TEST_F(ProtectionLimits, GatesThatAreMeantToBeOffAreNoFault) {
     for (const bool runs : {false, true}) {
       for (const bool pin : {false, true}) {
         SetUp();
-        inside::state() = DRIVE_START;
+        inside::be_in(DRIVE_START);
         inside::gates_off() = meant;
         if (runs) drive_enter(&drive, DRIVE_RUN);
         board.gates_on = false;
@@ -105,7 +105,7 @@ TEST_F(ProtectionLimits, GatesThatAreMeantToBeOffAreNoFault) {
 
 TEST_F(ProtectionLimits, ADriveThatIsOffIsNotJudged) {
   for (const drive_state_t state : {DRIVE_BOOT, DRIVE_CALIBRATE, DRIVE_READY}) {
-    inside::state() = state;
+    inside::be_in(state);
     inside::missing_windows() = inside::overruns() = 1000;
     inside::link_q16() = 0;
     EXPECT_EQ(judged(), FAULT_NONE) << state;
@@ -173,7 +173,7 @@ TEST_F(ProtectionLimits, InTheFirstTurnsAnEncoderMayBeReversed) {
 
 TEST_F(ProtectionLimits, TheRecordOfAFaultSaysWhatWas) {
   inside::time_ms() = 12345;
-  inside::state() = DRIVE_STOP;
+  inside::be_in(DRIVE_STOP);
   inside::selected().speed_bpp = bpp_of(600);
   inside::link_q16() = raw(287.5, 16);
   inside::current_dq_q20() = {raw(1.5, 20), raw(-2.5, 20)};

@@ -78,7 +78,7 @@ TEST_F(RequestFields, StatusTellsHowTheDriveIs) {
   run(100);
   ASSERT_GE(store_progress(), 20);
   ASSERT_LT(store_progress(), 100);
-  inside::state() = DRIVE_COMMISSION;
+  inside::be_in(DRIVE_COMMISSION);
   inside::fault() = FAULT_STOP;
   commissioning.outcome = COMMISSIONING_RUNNING;
   commissioning.phase = COMMISSIONING_MAP;
@@ -122,7 +122,7 @@ TEST_F(RequestFields, EveryErrorOfTheLinkHasItsPlace) {
 }
 
 TEST_F(RequestFields, AsManySignalsAsThereMayBe) {
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::current_dq_q20() = {-5, 0x12345678};
   inside::low_speed_estimate().angle_bam = 0x89ABCDEF;
   Octets places, values;
@@ -229,7 +229,7 @@ TEST_F(RequestFields, AScopeIsSetUpAsTold) {
 
 TEST_F(RequestFields, AScopeTellsWhereItsTriggerWas) {
   NEEDS("scope");
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   EXPECT_EQ(ask(REQUEST_SCOPE_ARM).text(), "the scope is not set up yet");
   const Octets setup = little(1, 2) + little(300, 2) + Octets{SCOPE_SINGLE, SCOPE_AT_ONCE, 4, 0} + i32(0);
   ASSERT_EQ(ask(REQUEST_SCOPE_SETUP, setup + Octets{2, 9, 0, 0, 10, 0, 0}).status(), OK);
@@ -254,7 +254,7 @@ TEST_F(RequestFields, AScopeTellsWhereItsTriggerWas) {
 }
 
 TEST_F(RequestFields, AStreamTakesItsSignalsInTheirOrder) {
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   Octets body = little(20, 2), values;
   inside::current_dq_q20() = {-5, 0x12345678};
   inside::low_speed_estimate().angle_bam = 0x89ABCDEF;

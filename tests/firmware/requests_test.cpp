@@ -6,6 +6,7 @@
 #include <set>
 
 extern "C" {
+#include "estimators/wiring.h"
 #include "firmware/base/crc.h"
 #include "firmware/commissioning/outcome.h"
 #include "firmware/commissioning/phases.h"
@@ -134,7 +135,7 @@ TEST_F(Requests, ARefusalSaysWhy) {
   EXPECT_EQ(range.status(), RANGE);
   EXPECT_EQ(range.text(), "speed_limit = 70000.0 is outside of 10 .. 20000 rpm: nothing changed");
   EXPECT_EQ(parameter_get(9), 3300 * 256);
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   const Answer running = set(9, 1000 * 256);
   EXPECT_EQ(running.status(), RUNNING);
   EXPECT_EQ(running.text(), "speed_limit may not change while the power stage is on: stop the drive first");
@@ -152,11 +153,11 @@ TEST_F(Requests, AConflictIsTakenAtRestAndRefusedInRun) {
             "set, but the drive does not start with it: window_maximum must be at least window_minimum "
             "(window_maximum = 10.00 us, window_minimum = 18.00 us)");
   EXPECT_EQ(parameter_get(43), 10 * 65536);
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   EXPECT_EQ(give(COMMAND_START).status(), CONFLICT);
   EXPECT_FALSE(inside::start_requested());
   EXPECT_EQ(set(43, long_window).status(), OK);
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   const Answer refused = set(43, 10 * 65536);
   EXPECT_EQ(refused.status(), CONFLICT);
   EXPECT_EQ(refused.text().substr(0, 30), "not taken while the drive runs");
@@ -166,7 +167,7 @@ TEST_F(Requests, AConflictIsTakenAtRestAndRefusedInRun) {
 TEST_F(Requests, Commands) {
   NEEDS("commissioning");
   EXPECT_EQ(give(COMMAND_START).status(), STATE) << "not calibrated yet";
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   EXPECT_EQ(give(COMMAND_SPEED, 600 * 65536).status(), OK);
   EXPECT_EQ(drive_commanded_speed(), 600 * 65536);
   const Answer fast = give(COMMAND_SPEED, 4000 * 65536);
@@ -182,7 +183,7 @@ TEST_F(Requests, Commands) {
   EXPECT_EQ(give(COMMAND_COAST).status(), OK);
   EXPECT_EQ(inside::state_requested(), nullptr);
   EXPECT_EQ(give(COMMAND_RESET).status(), STATE);
-  inside::state() = DRIVE_FAULT;
+  inside::be_in(DRIVE_FAULT);
   inside::fault() = FAULT_STOP;
   EXPECT_EQ(give(COMMAND_START).text(), "a fault is latched, reset it first: standstill not reached within stop_time");
   EXPECT_EQ(give(COMMAND_RESET).status(), OK);
@@ -210,13 +211,13 @@ TEST_F(Requests, TheStore) {
   (void)request_answer(COMM_WATCHDOG_SERIAL, load, 7, answer);
   EXPECT_EQ(answer[2], BUSY) << "at rest as well";
   run(20000);
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   EXPECT_EQ(give(COMMAND_LOAD).status(), RUNNING);
   EXPECT_EQ(give(COMMAND_DEFAULTS).status(), RUNNING);
 }
 
 TEST_F(Requests, StatusAndSignals) {
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::selected().speed_bpp = bpp_of(-123);
   inside::ramped_bpp() = bpp_of(600);
   inside::limits() = LIMIT_VOLTAGE | LIMIT_BRAKING;
@@ -258,7 +259,7 @@ TEST_F(Requests, FaultsWithTheirCircumstances) {
 
 TEST_F(Requests, TheHistoryKeepsTheLastSixteen) {
   for (int k = 0; k < 20; ++k) {
-    inside::state() = DRIVE_READY;
+    inside::be_in(DRIVE_READY);
     inside::time_ms() = static_cast<std::uint32_t>(100 + k);
     drive_trip(&drive, FAULT_OFFSET);
   }
@@ -357,7 +358,7 @@ TEST_F(Requests, TheScopeFromSetUpToTheLastWord) {
   wrong[12] = 2;
   EXPECT_EQ(ask(REQUEST_SCOPE_SETUP, wrong).status(), LENGTH);
   EXPECT_EQ(ask(REQUEST_SCOPE_ARM).status(), OK);
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   for (int k = 0; k < 3000; ++k) {
     inside::selected().speed_bpp = bpp_of(k);
     inside::time_ms() = static_cast<std::uint32_t>(k);
@@ -379,7 +380,7 @@ TEST_F(Requests, TheScopeFromSetUpToTheLastWord) {
 TEST(Signals, ACopyIsOfOneInterruptAndHasItsTime) {
   drive_reset();
   inside::time_ms() = 5;
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::current_dq_q20().d = 6;
   const std::uint16_t places[] = {9, 60000};
   std::int32_t values[2] = {-1, -1};
@@ -387,7 +388,7 @@ TEST(Signals, ACopyIsOfOneInterruptAndHasItsTime) {
   EXPECT_EQ(values[0], 6);
   EXPECT_EQ(values[1], 0);
   EXPECT_EQ(drive_signals_copy(places, 1, values).known, KNOWN_ROTOR | KNOWN_FRAME);
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   EXPECT_EQ(drive_signals_copy(places, 1, values).known, 0);
   EXPECT_EQ(values[0], 0);
 }

@@ -87,9 +87,9 @@ TEST_F(Drive, ADriveAtRestIsNotLimited) {
     inside::config().dead_time.drop_q16 = raw(5.0, 16);  // the modulator reckons with 10 V at least
     dead_time_design(&inside::config().dead_time);
     inside::link_q16() = 0;
-    inside::limits() = 0;
+    inside::modulation_limits() = 0;
     inside::modulate_step();
-    EXPECT_EQ(inside::limits() & LIMIT_VOLTAGE, closed ? LIMIT_VOLTAGE : 0);
+    EXPECT_EQ(inside::modulation_limits() & LIMIT_VOLTAGE, closed ? LIMIT_VOLTAGE : 0);
   }
 }
 

@@ -242,7 +242,7 @@ TEST_F(Scope, WhatIsUnknownIsNoNumber) {
   s.channel[2] = {signal_state, 0};
   arm(s);
   interrupts(4, -1);
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   if (drive_onlooker != nullptr) drive_onlooker();
   interrupts(SCOPE_DEPTH, -1);
   for (std::uint16_t channel = 0; channel < 2; ++channel) {

@@ -28,7 +28,7 @@ class Scope : public Drive {
 
   /// Interrupt number n: `current_d` is n, `current_q` what the test says.
   void interrupt(std::int32_t current = 0) {
-    inside::state() = DRIVE_RUN;
+    inside::be_in(DRIVE_RUN);
     inside::current_dq_q20().d = static_cast<std::int32_t>(n_);
     inside::current_dq_q20().q = current;
     inside::time_ms() = n_ / 10u;

@@ -109,7 +109,7 @@ TEST_F(SelfTest, SaysWhatIsWrong) {
 }
 
 TEST_F(SelfTest, DoesNotTouchTheRamWhileTheDriveRuns) {
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   whole_ram();
   EXPECT_EQ(selftest.pair, 0);
 }

@@ -110,13 +110,13 @@ TEST_F(States, AStopBreaksAStartOffAndOpensThePowerStage) {
 TEST_F(States, AStopInACommissioningsSpinBrakesTheShaft) {
   NEEDS("commissioning");
   make_run();
-  inside::state() = DRIVE_COMMISSION;
+  inside::be_in(DRIVE_COMMISSION);
   commissioning.outcome = COMMISSIONING_RUNNING;
   commissioning.phase = COMMISSIONING_SPIN;
   commissioning.tick = 1;
   for (const bool turning : {true, false}) {
+    inside::be_in(DRIVE_COMMISSION);
     inside::spins() = turning;
-    inside::state() = DRIVE_COMMISSION;
     commissioning.outcome = COMMISSIONING_RUNNING;
     commissioning.phase = COMMISSIONING_ALIGN;
     board.gates_on = true;
@@ -133,7 +133,7 @@ TEST_F(States, AStopInACommissioningsSpinBrakesTheShaft) {
 TEST_F(States, AStopLetsAnEvaluationEnd) {
   NEEDS("commissioning");
   make_ready();
-  inside::state() = DRIVE_COMMISSION;
+  inside::be_in(DRIVE_COMMISSION);
   commissioning.outcome = COMMISSIONING_RUNNING;
   commissioning.phase = COMMISSIONING_EVALUATE;
   commissioning.evaluate = true;
@@ -205,7 +205,7 @@ TEST_F(States, ACoastEndsACommissioning) {
   NEEDS("commissioning");
   make_run();
   commissioning_t& c = commissioning;
-  inside::state() = DRIVE_COMMISSION;
+  inside::be_in(DRIVE_COMMISSION);
   c.outcome = COMMISSIONING_RUNNING;
   c.phase = COMMISSIONING_MAP;
   drive_command_coast();

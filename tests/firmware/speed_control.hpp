@@ -21,7 +21,7 @@ class SpeedTask : public Drive {
   void SetUp() override {
     Drive::SetUp();
     make_ready();
-    inside::state() = DRIVE_RUN;
+    inside::be_in(DRIVE_RUN);
     polarity_watch.open = false;
     inside::link_q16() = raw(kLink, 16);
     inside::current_limit_q20() = raw(10.0, 20);

@@ -183,7 +183,7 @@ TEST_F(SpeedTask, EachPeriodHasItsOwnTask) {
 }
 
 TEST_F(SpeedTask, NothingIsControlledWhileNothingTurns) {
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   inside::ramped_bpp() = 0;
   inside::target_bpp() = 1000000;
   millisecond();
@@ -193,7 +193,7 @@ TEST_F(SpeedTask, NothingIsControlledWhileNothingTurns) {
 // The drive's clock, in any state.
 TEST_F(SpeedTask, AMillisecondHasTenPeriods) {
   for (const drive_state_t state : {DRIVE_READY, DRIVE_RUN, DRIVE_FAULT}) {
-    inside::state() = state;
+    inside::be_in(state);
     const std::uint32_t before = inside::time_ms();
     for (int k = 0; k < 20; ++k) {
       schedule_next(&drive, &inside::schedule());
@@ -210,10 +210,10 @@ TEST_F(SpeedTask, TheRampLeadsToItsTarget) {
   part(TASK_SPEED);
   part(TASK_SPEED);
   EXPECT_EQ(inside::ramped_bpp(), 2000);
-  inside::state() = DRIVE_STOP;
+  inside::be_in(DRIVE_STOP);
   part(TASK_SPEED);
   EXPECT_EQ(inside::ramped_bpp(), 1000);
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::config().ramp_step_bpp = 0;
   part(TASK_SPEED);
   EXPECT_EQ(inside::ramped_bpp(), 5000000);
@@ -238,7 +238,7 @@ TEST_F(SpeedTask, AtZeroThePlaceIsKept) {
   parameters.position_hold = 1280;
   ASSERT_TRUE(drive_config_load(&inside::config()));
   const auto holds = [&](drive_state_t state, std::int32_t target, std::int32_t ramp, std::int32_t now, bool before) {
-    inside::state() = state;
+    inside::be_in(state);
     inside::target_bpp() = target;
     inside::config().ramp_step_bpp = 1;
     inside::ramped_bpp() = ramp;

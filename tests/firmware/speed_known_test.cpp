@@ -54,14 +54,14 @@ TEST_F(SpeedKnown, InTheStatesInWhichTheRotorIsFollowed) {
   const std::pair<drive_state_t, bool> states[] = {{DRIVE_BOOT, false}, {DRIVE_CALIBRATE, false}, {DRIVE_READY, false},
                                                    {DRIVE_RUN, true},   {DRIVE_STOP, true},       {DRIVE_FAULT, false}};
   for (const auto& [state, known] : states) {
-    inside::state() = state;
+    inside::be_in(state);
     expect(known, std::to_string(state).c_str());
   }
 }
 
 TEST_F(SpeedKnown, InACommissioningUntilItsGatesAreOff) {
   NEEDS("commissioning");
-  inside::state() = DRIVE_COMMISSION;
+  inside::be_in(DRIVE_COMMISSION);
   expect(true, "it measures");
   inside::unseen() = KNOWN_ROTOR;
   expect(false, true, "the shaft follows the current");
@@ -72,7 +72,7 @@ TEST_F(SpeedKnown, InACommissioningUntilItsGatesAreOff) {
 
 // Before the polarity is known the angle may be half a turn off; a vector that turns says nothing of the rotor.
 TEST_F(SpeedKnown, InAStartOnlyOnceAShaftThatTurnsIsCaught) {
-  inside::state() = DRIVE_START;
+  inside::be_in(DRIVE_START);
   for (const bool caught : {false, true}) {
     inside::unseen() = caught ? 0 : KNOWN_ROTOR;
     inside::invalid_periods() = 0;
@@ -95,7 +95,7 @@ TEST_F(SpeedKnown, NotFromTheFirstPeriodOfAStartOn) {
 
 TEST_F(SpeedKnown, TheEncoderMakesNoDifference) {
   use_source(0);
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   expect(false, "its count has an angle only while the drive runs");
 }
 

@@ -18,7 +18,7 @@ class Stall : public Drive {
  protected:
   void SetUp() override {
     Drive::SetUp();
-    inside::state() = DRIVE_RUN;
+    inside::be_in(DRIVE_RUN);
     inside::loading() = false;
     inside::link_q16() = raw(300.0, 16);
     refer(100);
@@ -78,7 +78,7 @@ TEST_F(Stall, NotBelowTheLimitOfTheCurrent) {
 
 TEST_F(Stall, NotInAnotherStateThanRun) {
   for (const drive_state_t state : {DRIVE_READY, DRIVE_START, DRIVE_STOP, DRIVE_COMMISSION}) {
-    inside::state() = state;
+    inside::be_in(state);
     expect_none(0.0);
     EXPECT_EQ(inside::state(), state);
   }

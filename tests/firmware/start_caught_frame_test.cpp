@@ -92,6 +92,22 @@ TEST_F(StartCaught, AFastShaftIsWeakenedAtOnce) {
   EXPECT_LT(real(inside::reference_dq_q20().d, 20), -0.1);
 }
 
+// And goes on with it as the speed control will, which leaves the references to the start until then.
+TEST_F(StartCaught, AFastShaftIsWeakenedInTheFieldsPeriods) {
+  catch_at(1500.0, 1.0);
+  constexpr std::int32_t kMark = 77;
+  const auto changes = [&](task_t task) {
+    inside::weakening_q20() = inside::reference_dq_q20().d = kMark;
+    inside::scheduled_task() = task;
+    start_state.step(&drive);
+    return std::pair{inside::weakening_q20() != kMark, inside::reference_dq_q20().d != kMark};
+  };
+  EXPECT_EQ(changes(TASK_SLOT), std::pair(false, false));
+  EXPECT_EQ(changes(TASK_FIELD), std::pair(true, false));
+  inside::field_weakening().trim_q20 = raw(-3.0, 20);
+  EXPECT_EQ(changes(TASK_SPEED), std::pair(false, true));
+}
+
 // Until the axis is seen the frame turns with the rotor as the back-EMF has it; then with the axis, where that is not
 // further off than the back-EMF can be. The flux is seen by the inductances that were seen with it.
 TEST_F(StartCaught, TheFrameTurnsWithTheRotorUntilItsAxisIsSeen) {

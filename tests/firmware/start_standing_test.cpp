@@ -4,6 +4,7 @@
 #include "tests/firmware/start_standing_test.hpp"
 
 extern "C" {
+#include "estimators/wiring.h"
 #include "firmware/config/config.h"
 #include "firmware/dictionary/parameters.h"
 #include "firmware/drive/brake_release_hold.h"
@@ -18,7 +19,7 @@ using namespace stillspin::test;
 
 // Nothing of the last run is left, whatever it was.
 TEST_F(StartStanding, BeginsWithNothingOfTheLastRun) {
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   drive_control_t& c = inside::control();
   references_t& r = c.references;
   c.ramp.value = r.feed_forward_q16 = r.current_q20.d = r.current_q20.q = 12345;

@@ -48,7 +48,7 @@ TEST_F(Drive, AStopEndsAtTwoRevolutionsPerMinute) {
     make_run();
     drive_command_stop();
     inside::ramped_bpp() = 0;
-    inside::state() = DRIVE_STOP;
+    inside::be_in(DRIVE_STOP);
     inside::selected().speed_bpp = bpp_of(1000) / 10000 * tenths;
     drive_sequence(&drive);
     EXPECT_EQ(inside::state(), std::abs(tenths) < 20 ? DRIVE_READY : DRIVE_STOP) << tenths;

@@ -135,13 +135,13 @@ TEST_F(Store, OneJobAtATimeAndNoLoadWhileRunning) {
   EXPECT_FALSE(store_load());
   EXPECT_FALSE(store_defaults());
   serve();
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   EXPECT_FALSE(store_load());
   EXPECT_FALSE(store_defaults());
   EXPECT_EQ(save(), STORE_SAVED) << "the background has time for it";
-  inside::state() = DRIVE_READY;
+  inside::be_in(DRIVE_READY);
   ASSERT_TRUE(store_load());
-  inside::state() = DRIVE_START;  // meanwhile
+  inside::be_in(DRIVE_START);  // meanwhile
   serve();
   EXPECT_EQ(store_state(), STORE_FAILED);
 }

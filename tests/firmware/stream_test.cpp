@@ -15,7 +15,7 @@ namespace {
 using namespace stillspin::test;
 
 TEST_F(Requests, AStreamComesAtItsPeriod) {
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::current_dq_q20().d = 77;
   EXPECT_EQ(ask(REQUEST_STREAM, little(20, 2) + little(9, 2) + little(0, 2)).status(), OK);
   records.clear();
@@ -88,7 +88,7 @@ TEST_F(Requests, AStreamKeepsItsStepOverWhatWasMissed) {
   const std::uint16_t places[] = {9, 10};
   std::uint16_t event[RECORD_MAX];
   const std::uint32_t begin = inside::time_ms();
-  inside::state() = DRIVE_RUN;
+  inside::be_in(DRIVE_RUN);
   inside::current_dq_q20() = {-2, 0x01020304};
   stream_setup(COMM_WATCHDOG_BUS, 10, places, 2);
   const auto comes_at = [&](std::uint32_t ms) {

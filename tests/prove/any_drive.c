@@ -87,6 +87,7 @@ void any_moment(void) {
 
 void drive_parameters_changed(void) {}
 void drive_command_start(void) {}
+bool drive_start_is_asked(void) { return any_bool(); }
 void drive_command_stop(void) {}
 void drive_command_coast(void) {}
 void drive_command_reset(void) {}

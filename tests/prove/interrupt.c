@@ -156,9 +156,9 @@ static void any_parts(void) {
 static void any_made(drive_config_t* c) {
   any_config(c);
   any_parameters();
-#define TAKE(name) c->values.name = parameters.name;
-  CONFIG_VALUES(TAKE)
-#undef TAKE
+#define CONFIG_VALUE(name) c->values.name = parameters.name;
+#include "firmware/interfaces/all_config_values.h"
+#undef CONFIG_VALUE
 }
 
 void drive_config_take(drive_config_t* c) {
@@ -177,12 +177,12 @@ static void one_period(void) {
   if (any_bool()) any_parameters();
   if (any_bool()) drive_parameters_changed();
   if (any_bool()) background_step(&drive);
-  drive.request.start = any_bool();
   drive.request.stop = any_bool();
   drive.request.coast = any_bool();
   drive.request.reset = any_bool();
-  static const state_request_t commission = {DRIVE_COMMISSION, DRIVE_READY}, look = {DRIVE_START, DRIVE_READY};
-  drive.request.begin = any_bool() ? NULL : any_bool() ? &commission : &look;
+  static const state_request_t start = {DRIVE_START, DRIVE_RUN}, commission = {DRIVE_COMMISSION, DRIVE_READY},
+                               look = {DRIVE_START, DRIVE_READY};
+  drive.request.begin = any_bool() ? NULL : any_bool() ? &start : any_bool() ? &commission : &look;
   feature_status.loading = any_bool();
   drive.request.speed = any_bool();
   drive.request.speed_rpm_q16 = any_i32;

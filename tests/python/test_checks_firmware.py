@@ -62,6 +62,8 @@ VALUES = "enum {\n  POSITION_ENCODER = 0,  // measured\n  POSITION_AVV = 3\n};\n
         "bool f(drive_t* d) { const position_source_t* s = position_sources[POSITION_AVV]; return d->source != s; }",
         "bool f(drive_t* d) { const position_source_t *s = &avv_source, *t = s; return t == d->source; }",
         "bool f(drive_t* d) { d->wanted = position_sources[POSITION_AVV]; return d->source == d->wanted; }",
+        "bool f(const drive_t* d) { return d->source == edition_default_source; }",
+        "bool f(drive_t* d) { const position_source_t* s = edition_start_source; return d->source == s; }",
     ],
 )
 def test_question_which_source_is_chosen_is_caught(tmp_path: Path, line: str) -> None:
@@ -77,6 +79,7 @@ def test_question_which_source_is_chosen_is_caught(tmp_path: Path, line: str) ->
         "int16_t f(void) { return position_source_variants[parameters.position_source]; }",
         "estimator_output_t f(drive_t* d) { return position_sources[POSITION_AVV]->step(d, NULL); }",
         "bool f(const drive_t* d) { return (d->source->traits & SOURCE_MEASURES) != 0u; }",
+        "bool f(drive_t* d) { return edition_start_source->traits == 0u; }",
         "bool f(void) {\n  const void* s = position_sources[POSITION_AVV];\n  return NULL != s && s != NULL;\n}",
         "bool f(const state_t* s) {\n  const position_source_t* o = position_sources[POSITION_AVV];\n"
         "  return s->kind == o->traits;\n}\nbool g(const int* o, const int* p) {\n  return p == o;\n}",
@@ -208,7 +211,7 @@ PERIOD = {
         "  drive_supervision_t* const v = &d->supervision; v->judged_at = d->heartbeat;",
         "  drive_estimate_t* const e = &d->estimate; e->trim.mismatch_q30 = 0;",
         "  clear(&d->supervision, sizeof d->supervision);",
-        "  d->request.start = true;",
+        "  d->request.stop = true;",
         "  drive_request_t* const r = &d->request; r->speed = false;",
         "  d->control.limits |= LIMIT_VOLTAGE;",
         "  d->fault = FAULT_NONE;",

@@ -166,7 +166,14 @@ def test_list_params_and_version_print_what_there_is(call):
     listed = call("list").stdout
     assert all(word in listed for word in ("A10", "A18c", "Fig. 16", "bench", "ideal"))
     assert "speed_ramp" in call("params").stdout
-    assert call("version").stdout.startswith("stillspin 0.1.0")
+    version, drive = call("version").stdout.splitlines()
+    assert version.startswith("stillspin 0.1.0")
+    assert drive == "virtual drive: edition lab; STILLSPIN_EDITION chooses another: drive, hil, minimal"
+
+
+def test_version_names_the_edition_in_use(call, monkeypatch):
+    monkeypatch.setenv("STILLSPIN_EDITION", "hil")
+    assert "virtual drive: edition hil;" in call("version").stdout
 
 
 def test_the_same_seed_gives_the_same_bytes(call, tmp_path):

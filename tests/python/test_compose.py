@@ -211,6 +211,18 @@ def test_two_rows_of_one_place_are_refused(tmp_path: Path) -> None:
         compose.table_text("phase_control", compose.read_edition(str(own)), ROOT)
 
 
+def test_an_edition_needs_what_a_start_looks_with(tmp_path: Path) -> None:
+    own = plant(tmp_path, "own.txt", "drive\n")
+    with pytest.raises(ValueError, match="no feature is there for start_source, and no edition works without it"):
+        compose.table_text("start_source", compose.read_edition(str(own)), ROOT)
+
+
+def test_a_list_is_joined_of_every_folders_part(tmp_path: Path) -> None:
+    joined = compose.made(compose.read_edition("minimal"), ROOT)["firmware/interfaces/all_config_values.h"]
+    assert '#include "firmware/drive/config_list.h"' in joined
+    assert '#include "firmware/commissioning/config_list.h"' in joined
+
+
 def test_the_configuration_stops_where_the_edition_cannot_be_built(tmp_path: Path) -> None:
     plant(tmp_path, "own.txt", "console\n")
     command = ["cmake", "-S", str(ROOT), "-B", str(tmp_path / "build"), f"-DSTILLSPIN_EDITION={tmp_path / 'own.txt'}"]

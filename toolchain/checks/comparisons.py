@@ -16,7 +16,7 @@ TABLE = "position_sources"
 NAMES = "firmware/dictionary/parameters.h"  # of the values
 _ENUM = re.compile(r"enum\s*\{([^}]*\bPOSITION_ENCODER\b[^}]*)\}")
 _LOOKED_UP = re.compile(rf"\b(?:{TABLE}\s*\[[^\]]*\]|position_source_variants\s*\[[^\]]*\](?!\s*[=!<>]))")
-_ROW = r"&\s*\w+_source\b"
+_ROW = r"(?:&\s*\w+_source\b|\bedition_\w+_source\b(?!\s*->))"
 _COMPARED = re.compile(rf"[=!]=\s*(?:{_ROW}|{TABLE}\b)|(?:{_ROW}|{TABLE}\s*\[[^\]]*\])\s*[=!]=")
 _NAMED = r"((?:\w+(?:->|\.))*\w+)\s*=\s*(?:{})"  # an expression that such a row is assigned to
 

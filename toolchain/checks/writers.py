@@ -56,7 +56,6 @@ WRITERS: dict[str, tuple[str, ...]] = {
     "zero_current_a_q8": ("firmware/drive/sequence.c", _FRESH),
     "zero_current_b_q8": ("firmware/drive/sequence.c", _FRESH),
     "offset_residual_q8": ("firmware/drive/sequence.c",),
-    "wiring": ("firmware/start/",),
     "flags": (*_STATES, "firmware/mode/mode.c"),
     "flags.behind": (*_STATES,),
     "flags.invalid": ("firmware/start/",),
@@ -79,17 +78,15 @@ WRITERS: dict[str, tuple[str, ...]] = {
     "control.references.closed": (*_STATES, "firmware/mode/mode.c"),
     "control.command_rpm_q16": ("firmware/drive/sequence.c", "firmware/mode/mode.c"),
     "control.target_bpp": ("firmware/drive/sequence.c", "firmware/mode/mode.c", "firmware/commissioning/spin.c"),
-    "control.spin_d_q20": ("firmware/commissioning/spin.c",),
+    "control.references.spin_d_q20": ("firmware/commissioning/spin.c",),
     "control.headroom_q20": ("firmware/drive/speed.c",),
     "control.braking_headroom_q20": ("firmware/drive/speed.c",),
     "control.per_torque_constant": ("firmware/drive/speed.c", _FRESH),
     "time_ms": ("firmware/drive/sequence.c",),
-    "control.limits": (
-        "firmware/drive/speed.c",  # of current and speed
-        "firmware/drive/modulation.c",  # of voltage and time
-    ),
+    "control.limits": ("firmware/drive/speed.c",),
     "control.command_q16": ("firmware/drive/current.c",),
     "modulation.state": ("firmware/drive/modulation.c", "firmware/start/start.c"),
+    "modulation.limits": ("firmware/drive/modulation.c",),
     "modulation.patterns": ("firmware/drive/modulation.c",),
     "modulation.sampled": ("firmware/drive/modulation.c",),
     "modulation.running": ("firmware/drive/modulation.c",),
@@ -151,7 +148,6 @@ WRITERS: dict[str, tuple[str, ...]] = {
     "control.speed_ready": (_FRESH,),
     "control.current_limit_q20": ("firmware/drive/reload.c", "firmware/board/functions.c", _FRESH),
     # Asked for at background level, taken in the period.
-    "request.start": ("firmware/mode/commands.c", "firmware/drive/sequence.c"),
     "request.stop": ("firmware/mode/commands.c", "firmware/drive/sequence.c"),
     "request.coast": ("firmware/mode/commands.c", "firmware/drive/sequence.c"),
     "request.reset": ("firmware/mode/commands.c", "firmware/drive/sequence.c"),

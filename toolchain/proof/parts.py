@@ -45,6 +45,7 @@ SHOWN_ELSEWHERE = ("q_sat_bits", "q_mix", "q_mix_sat")
 
 # Of what the build makes (toolchain/compose.py).
 SOURCES_TABLE, VARIANTS_TABLE = "made/position_sources.c", "made/source_variants.c"
+START_SOURCE, DEFAULT_SOURCE = "made/start_source.c", "made/default_source.c"
 SVPWM = ("tests/prove/svpwm.c", "svpwm/*.c", QMATH)
 CONTROL = ("control/*.c", QMATH)
 ESTIMATORS = ("estimators/*.c", *CONTROL)
@@ -58,7 +59,7 @@ CONFIGURATION = (
         "firmware/base/clear.c",
     ),
     *("firmware/sources/*/*.c", "firmware/start/if_start/load.c"),
-    *(SOURCES_TABLE, VARIANTS_TABLE, "svpwm/*.c", *ESTIMATORS),
+    *(SOURCES_TABLE, VARIANTS_TABLE, DEFAULT_SOURCE, "svpwm/*.c", *ESTIMATORS),
 )
 OCTETS, RECORD, CRC = "firmware/base/octets.c", "firmware/link/record.c", "firmware/base/crc.c"
 CRC_BLOCK = "firmware/base/crc_block.c"
@@ -139,7 +140,8 @@ INTERRUPT = (
     *("tests/prove/interrupt.c", "firmware/start/*.c", "firmware/start/*/*.c", "firmware/scope/scope.c"),
     *(*ESTIMATORS, "svpwm/*.c"),
     *("firmware/drive/*.c", "firmware/mode/*.c", "firmware/sources/*/*.c", "firmware/hysteresis/*.c"),
-    *(SOURCES_TABLE, "made/drive_states.c", "made/start_phases.c", "made/signal_looks.c", "firmware/board/signals.c"),
+    *(SOURCES_TABLE, START_SOURCE, DEFAULT_SOURCE, "made/drive_states.c", "made/start_phases.c"),
+    *("made/signal_looks.c", "firmware/board/signals.c"),
     *(f"firmware/board/{name}.c" for name in ("derating", "functions", "speed_input")),
     *(f"firmware/commissioning/{name}.c" for name in ("sequence", "hold", "map", "spin", "staircase")),
 )

@@ -11,6 +11,7 @@
 #include "firmware/sources/flux/flux.h"
 #include "firmware/sources/observer/observer.h"
 #include "hal/hal_encoder.h"
+#include "hal/qmath/qcall.h"
 
 encoder_t encoder;
 
@@ -26,15 +27,19 @@ static bool avv_sees(const parameters_t* p) {
 }
 
 static void take(void) {
-  encoder.trim_bam = (uint32_t)q_mul64(parameters.encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
+  encoder.trim_bam = (uint32_t)qc_mul_sat(parameters.encoder_trim, 11930465L, 16);  // 2^32 / 360 per degree
   encoder.per_count_bam = encoder_angle(1, parameters.pole_pairs, parameters.encoder_counts);
   encoder.beside_flux = parameters.flux_beside > 0;
   encoder.beside_avv = avv_sees(&parameters);
 }
 
-void encoder_set_up(void) { hal_encoder_init((uint32_t)parameters.encoder_counts); }
+void encoder_service(void) {
+  if (encoder.counts == parameters.encoder_counts) return;
+  encoder.counts = parameters.encoder_counts;
+  hal_encoder_init((uint32_t)encoder.counts);
+}
 
-const config_part_t encoder_part = {NULL, take, encoder_set_up};
+const config_part_t encoder_part = {NULL, take};
 
 uint32_t encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn) {
   // 2^32 / counts, exact where the counts are a power of two, to 1e-5 of a turn otherwise.

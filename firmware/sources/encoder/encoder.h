@@ -13,6 +13,7 @@ typedef struct {
   uint32_t aligned_bam;    // where it was found
   uint32_t trim_bam;       // deliberate turn of its angle
   uint32_t per_count_bam;  // electrical angle of a count
+  int32_t counts;          // of a turn, that the board's counter is set up for
   bool beside_flux;        // which is compared with it, in the place of AVV
   bool beside_avv;         // which has active vectors that are long enough to sample in
 } encoder_t;
@@ -26,8 +27,8 @@ extern const position_source_t encoder_source;
 /// As after power-on.
 void encoder_reset(void);
 
-/// The board's counter for the encoder's parameters.
-void encoder_set_up(void);
+/// Background level, in every pass: the board's counter is that of the parameter, which changes at rest alone.
+void encoder_service(void);
 
 /// Electrical angle of an encoder count whose zero lies on phase a.
 uint32_t encoder_angle(uint32_t count, int32_t pole_pairs, int32_t counts_per_turn);

@@ -81,7 +81,7 @@ static packed_text_t make(drive_config_t* c) {
 
 static void take(void) { flux_config = made; }
 
-const config_part_t flux_part = {make, take, NULL};
+const config_part_t flux_part = {make, take};
 
 // The current at the end of the period: what was measured in the frame in use, that frame moved on.
 static flux_period_t period_of(const drive_t* d, bool is_full) {

@@ -43,7 +43,7 @@ static packed_text_t make(drive_config_t* c) {
 
 static void take(void) { paper_config = made; }
 
-const config_part_t paper_part = {make, take, NULL};
+const config_part_t paper_part = {make, take};
 
 // Below this speed there are long zero vectors alone.
 static int32_t enter_bpp(const drive_t* d) { return d->config.blend.low_bpp / 4 * 3; }

@@ -95,6 +95,7 @@ static void close_loop(drive_t* d) {
   d->control.references.closed = true;
   field_weakening_reset(&d->control.weakening);
   drive_weaken_field(d, &d->control);
+  drive_refer_field(d, &d->control);
 }
 
 // The gates are off already.
@@ -184,12 +185,8 @@ static void begin_catch(drive_t* d) {
 }
 
 // The rotor's half turn is known; the estimators have to follow it with a small error before the drive may run.
-static start_phase_t step_catch(drive_t* d) {
+static start_phase_t follow_rotor(drive_t* d) {
   flying_start_t* const s = &flying_start;
-  if (d->flags.shorted) {
-    if (d->schedule.task != TASK_FIELD) close_loop(d);  // which weakens the field itself
-    return START_GOES_ON;
-  }
   if (d->flags.gates_off) start_power(d, true);
   // A start that asks no saliency for the axis has nothing to learn and nothing to watch: the pulses' word is the last.
   const bool at_once = start_is_open_loop(d);
@@ -210,6 +207,18 @@ static start_phase_t step_catch(drive_t* d) {
   if (qc_abs_sat(s->stray) >= STRAY_MAX_BAM) return try_again(d);
   start_run(d, d->estimate.avv.observer.angle_bam, d->estimate.avv.observer.speed_bpp);
   return START_GOES_ON;
+}
+
+// The references are the start's until the drive runs, so it weakens the field itself.
+static start_phase_t step_catch(drive_t* d) {
+  const task_t task = d->schedule.task;
+  if (d->flags.shorted) {
+    if (task != TASK_FIELD) close_loop(d);
+    return START_GOES_ON;
+  }
+  if (task == TASK_SPEED) drive_refer_field(d, &d->control);
+  if (task == TASK_FIELD) drive_weaken_field(d, &d->control);
+  return follow_rotor(d);
 }
 
 const phase_t listen_phase = {begin_listen, step_listen, NULL};

@@ -10,4 +10,4 @@ static void take(void) {
   start_ways.checks_wiring = parameters.wiring_check != 0;
 }
 
-const config_part_t flying_part = {NULL, take, NULL};
+const config_part_t flying_part = {NULL, take};

@@ -32,4 +32,4 @@ static void take(void) {
   if_is_blind = start_ways.open_loop && parameters.inductance_q - parameters.inductance_d < parameters.inductance_d / 8;
 }
 
-const config_part_t if_ramp_part = {make, take, NULL};
+const config_part_t if_ramp_part = {make, take};

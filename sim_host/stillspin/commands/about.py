@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from stillspin import __version__, resources
+from stillspin import __version__, core, resources
 from stillspin.cases import scenario_file
 from stillspin.commands.connection import opened
 from stillspin.report import tables
@@ -28,8 +28,11 @@ def version(
         str, typer.Option("--drive", "-d", metavar="ADDRESS", help="The drive to ask, such as /dev/ttyUSB0.")
     ] = "",
 ) -> None:
-    """The version, and the revision of the sources; with --drive that of the drive's firmware, too."""
+    """The version, the sources' revision, the virtual drive's edition; with --drive those of a drive, too."""
     print(f"stillspin {__version__} ({revision()})")
+    if known := core.editions():
+        others = f"; {core.EDITION} chooses another: {', '.join(known[1:])}" if known[1:] else ""
+        print(f"virtual drive: edition {known[0]}{others}")
     if where:
         with opened(where) as drive:
             print(f"drive: {drive.identity.text}")

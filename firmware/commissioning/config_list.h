@@ -1,0 +1,3 @@
+// Parameters that an interrupt uses as they stand: rows of a list, see interfaces/config_values.h.
+
+CONFIG_VALUE(spin_speed)

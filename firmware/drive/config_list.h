@@ -1,0 +1,16 @@
+// Parameters that an interrupt uses as they stand: rows of a list, see interfaces/config_values.h.
+
+CONFIG_VALUE(current_divider)
+CONFIG_VALUE(divergence_limit)
+CONFIG_VALUE(divergence_time)
+CONFIG_VALUE(excitation)
+CONFIG_VALUE(hold_time)
+CONFIG_VALUE(inertia_adapt)
+CONFIG_VALUE(link_regulation)
+CONFIG_VALUE(mtpa)
+CONFIG_VALUE(polarity_check)
+CONFIG_VALUE(speed_law)
+CONFIG_VALUE(stop_time)
+CONFIG_VALUE(voltage_use)
+CONFIG_VALUE(weakening_gain)
+CONFIG_VALUE(weakening_limit)
