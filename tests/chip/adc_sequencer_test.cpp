@@ -1,6 +1,6 @@
 // Sequencers: pointers, cascading, what becomes of triggers that come while a burst runs, and interrupts.
 
-#include "tests/chip/adc_bench.hpp"
+#include "tests/chip/adc.hpp"
 
 namespace stillspin::chip::testing {
 namespace {

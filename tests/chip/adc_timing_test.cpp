@@ -1,6 +1,6 @@
 // When the ADC samples and when its results appear, against the tables of the data sheet (in ADCCLK).
 
-#include "tests/chip/adc_bench.hpp"
+#include "tests/chip/adc.hpp"
 
 namespace stillspin::chip::testing {
 namespace {

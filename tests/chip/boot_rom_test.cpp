@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "sim_host/chip/memory.hpp"
-#include "tests/chip/core_bench.hpp"
-#include "tests/chip/sci_bench.hpp"
+#include "tests/chip/core.hpp"
+#include "tests/chip/sci.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "tests/chip/core_bench.hpp"
+#include "tests/chip/core.hpp"
 
 namespace {
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/chip/core_bench.hpp"
+#include "tests/chip/core.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // eCAN: errors, error counters, bus-off.
 
-#include "tests/chip/ecan_bench.hpp"
+#include "tests/chip/ecan.hpp"
 
 namespace stillspin::chip::testing {
 namespace {

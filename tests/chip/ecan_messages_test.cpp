@@ -1,6 +1,6 @@
 // eCAN: what the mailboxes send and take.
 
-#include "tests/chip/ecan_bench.hpp"
+#include "tests/chip/ecan.hpp"
 
 namespace stillspin::chip::testing {
 namespace {

@@ -1,6 +1,6 @@
 // eCAN: configuration, accesses, interrupts.
 
-#include "tests/chip/ecan_bench.hpp"
+#include "tests/chip/ecan.hpp"
 
 namespace stillspin::chip::testing {
 namespace {

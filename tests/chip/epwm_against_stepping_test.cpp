@@ -5,7 +5,7 @@
 #include <array>
 #include <random>
 
-#include "tests/chip/epwm_bench.hpp"
+#include "tests/chip/epwm.hpp"
 
 namespace stillspin::chip::testing {
 namespace {

@@ -1,6 +1,6 @@
 // Interrupts and start-of-conversion pulses from the ePWM.
 
-#include "tests/chip/epwm_bench.hpp"
+#include "tests/chip/epwm.hpp"
 
 namespace stillspin::chip::testing {
 namespace {

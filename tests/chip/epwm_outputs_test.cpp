@@ -1,6 +1,6 @@
 // Action qualifier and dead band: which edge reaches the pins, and when.
 
-#include "tests/chip/epwm_bench.hpp"
+#include "tests/chip/epwm.hpp"
 
 namespace stillspin::chip::testing {
 namespace {

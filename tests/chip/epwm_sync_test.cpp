@@ -1,7 +1,7 @@
 // The synchronisation chain. A pulse takes two SYSCLKOUT from its source to the load of TBPHS, so a target that is to
 // run in phase has TBPHS = 2.
 
-#include "tests/chip/epwm_bench.hpp"
+#include "tests/chip/epwm.hpp"
 
 namespace stillspin::chip::testing {
 namespace {

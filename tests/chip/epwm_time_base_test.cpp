@@ -1,6 +1,6 @@
 // Counter, compare events, shadow loads and their instants. All times are exact: the model counts in the same ticks.
 
-#include "tests/chip/epwm_bench.hpp"
+#include "tests/chip/epwm.hpp"
 
 namespace stillspin::chip::testing {
 namespace {

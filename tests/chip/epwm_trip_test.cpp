@@ -1,6 +1,6 @@
 // Trip zone: from the pin to the gates in the same tick, and what it takes to come back.
 
-#include "tests/chip/epwm_bench.hpp"
+#include "tests/chip/epwm.hpp"
 
 namespace stillspin::chip::testing {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "hal/f2808/registers.h"
 #include "sim_host/chip/eqep.hpp"
-#include "tests/chip/peripheral_bench.hpp"
+#include "tests/chip/peripheral.hpp"
 
 namespace stillspin::chip::testing {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "hal/f2808/registers.h"
-#include "tests/chip/peripheral_bench.hpp"
+#include "tests/chip/peripheral.hpp"
 
 namespace stillspin::chip::testing {
 namespace {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "hal/f2808/flash_library.h"
-#include "tests/chip/core_bench.hpp"
+#include "tests/chip/core.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-#include "tests/chip/core_bench.hpp"
+#include "tests/chip/core.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // The serial port's receiver: sampling, errors, breaks, FIFO and interrupts.
 
-#include "tests/chip/sci_bench.hpp"
+#include "tests/chip/sci.hpp"
 
 namespace stillspin::chip::testing {
 namespace {

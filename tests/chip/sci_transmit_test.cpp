@@ -1,6 +1,6 @@
 // The serial port's transmitter: frames and their times, FIFO, flags, interrupts; loopback and what is not modelled.
 
-#include "tests/chip/sci_bench.hpp"
+#include "tests/chip/sci.hpp"
 
 namespace stillspin::chip::testing {
 namespace {

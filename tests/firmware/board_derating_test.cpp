@@ -1,6 +1,6 @@
 // What takes the current down: a hot heat sink, and an overload that has lasted.
 
-#include "tests/firmware/board_functions_test.hpp"
+#include "tests/firmware/board_functions.hpp"
 
 namespace stillspin::test {
 

@@ -1,7 +1,7 @@
 // What the board does beside the gates, on a board that the test describes: each function at its threshold, on both
 // sides of it, and nothing while it is off.
 
-#include "tests/firmware/board_functions_test.hpp"
+#include "tests/firmware/board_functions.hpp"
 
 namespace stillspin::test {
 namespace {

@@ -4,7 +4,7 @@
 #include "firmware/drive/reset.h"
 #include "firmware/mode/commands.h"
 #include "firmware/mode/states.h"
-#include "tests/firmware/can_command_test.hpp"
+#include "tests/firmware/can_command.hpp"
 
 namespace stillspin::test {
 namespace {

@@ -1,7 +1,7 @@
 // The command from the bus: what counts, and what starts and stops the drive. Silence and faults are
 // can_command_silence_test.cpp.
 
-#include "tests/firmware/can_command_test.hpp"
+#include "tests/firmware/can_command.hpp"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "tests/firmware/can_node_test.hpp"
+#include "tests/firmware/can_node.hpp"
 
 extern "C" {
 #include "firmware/dictionary/parameters.h"

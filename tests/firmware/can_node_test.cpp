@@ -1,6 +1,6 @@
 // The drive as a node of the bus: what it sends and when, parameters, records, recovery, arbitrary frames.
 
-#include "tests/firmware/can_node_test.hpp"
+#include "tests/firmware/can_node.hpp"
 
 #include <random>
 

@@ -1,6 +1,6 @@
 // What is used of the saturation map that was measured, and how far up it reaches.
 
-#include "tests/firmware/commissioning_judge_test.hpp"
+#include "tests/firmware/commissioning_judge.hpp"
 
 namespace {
 

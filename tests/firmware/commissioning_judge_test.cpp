@@ -1,6 +1,6 @@
 // What is used of what was measured: a machine whose sums are all right, and each thing that may be wrong with them.
 
-#include "tests/firmware/commissioning_judge_test.hpp"
+#include "tests/firmware/commissioning_judge.hpp"
 
 #include <vector>
 

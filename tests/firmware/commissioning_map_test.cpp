@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "tests/firmware/commissioning_phases_test.hpp"
+#include "tests/firmware/commissioning_phases.hpp"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // What the commissioning does with the drive in each of its phases but the map, and what it sums up: the shaft and the
 // windows are the test's, so what comes out is known beforehand.
 
-#include "tests/firmware/commissioning_phases_test.hpp"
+#include "tests/firmware/commissioning_phases.hpp"
 
 #include <algorithm>
 

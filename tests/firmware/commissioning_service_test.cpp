@@ -1,6 +1,6 @@
 // What the background level does beside a commissioning that runs, and what the command for one changes before it.
 
-#include "tests/firmware/commissioning_phases_test.hpp"
+#include "tests/firmware/commissioning_phases.hpp"
 
 namespace {
 

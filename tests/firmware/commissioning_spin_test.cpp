@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "tests/firmware/commissioning_phases_test.hpp"
+#include "tests/firmware/commissioning_phases.hpp"
 
 namespace {
 

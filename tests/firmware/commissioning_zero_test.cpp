@@ -1,6 +1,6 @@
 // The staircase of a machine whose L/R leaves alternating pulses no room: levels under the zero vector alone.
 
-#include "tests/firmware/commissioning_phases_test.hpp"
+#include "tests/firmware/commissioning_phases.hpp"
 #include "tests/firmware/commissioning_sums.hpp"
 
 namespace {

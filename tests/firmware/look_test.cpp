@@ -1,7 +1,7 @@
 // A look at the shaft that is no start: two short pulses, and back to ready with what they showed.
 
 #include "tests/firmware/requests.hpp"
-#include "tests/firmware/start_caught_test.hpp"
+#include "tests/firmware/start_caught.hpp"
 
 extern "C" {
 #include "firmware/api/actions.h"

@@ -2,7 +2,7 @@
 
 #include "firmware/drive/reset.h"
 #include "firmware/mode/commands.h"
-#include "tests/firmware/scope_test.hpp"
+#include "tests/firmware/scope.hpp"
 
 namespace {
 

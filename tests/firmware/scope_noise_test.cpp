@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "tests/control/quantities.hpp"
-#include "tests/firmware/scope_test.hpp"
+#include "tests/firmware/scope.hpp"
 
 namespace {
 

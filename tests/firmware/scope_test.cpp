@@ -1,6 +1,6 @@
 // Which records a capture holds, and where its trigger lies.
 
-#include "tests/firmware/scope_test.hpp"
+#include "tests/firmware/scope.hpp"
 
 #include "firmware/drive/signals.h"
 #include "firmware/mode/states.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "tests/firmware/store_test.hpp"
+#include "tests/firmware/store.hpp"
 
 namespace {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "tests/firmware/start_caught_test.hpp"
+#include "tests/firmware/start_caught.hpp"
 
 extern "C" {
 #include "firmware/mode/states.h"

@@ -1,7 +1,7 @@
 // The start of a shaft that turns: its short circuits, and what is made of a pair. How the drive goes on from there is
 // start_caught_frame_test.cpp.
 
-#include "tests/firmware/start_caught_test.hpp"
+#include "tests/firmware/start_caught.hpp"
 
 extern "C" {
 #include "firmware/dictionary/parameters.h"

@@ -1,7 +1,7 @@
 // The polarity of a shaft that stands, by saturation and by motion: what each test asks of the drive, and what stays
 // open. What the estimators say is the test's.
 
-#include "tests/firmware/start_standing_test.hpp"
+#include "tests/firmware/start_standing.hpp"
 
 extern "C" {
 #include "firmware/config/config.h"

@@ -1,7 +1,7 @@
 // The start of a shaft that stands but for its polarity, phase by phase: what each asks of the drive and where it goes
 // from there. What the estimators say is the test's.
 
-#include "tests/firmware/start_standing_test.hpp"
+#include "tests/firmware/start_standing.hpp"
 
 extern "C" {
 #include "estimators/wiring.h"

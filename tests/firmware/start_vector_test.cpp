@@ -1,6 +1,6 @@
 // The I-F start of a shaft that stands: how its vector begins, and who takes over from it.
 
-#include "tests/firmware/start_standing_test.hpp"
+#include "tests/firmware/start_standing.hpp"
 
 extern "C" {
 #include "firmware/drive/brake_release_hold.h"

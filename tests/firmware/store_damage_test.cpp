@@ -6,7 +6,7 @@
 #include "firmware/drive/reset.h"
 #include "firmware/mode/commands.h"
 #include "sim_host/bench/texts.hpp"
-#include "tests/firmware/store_test.hpp"
+#include "tests/firmware/store.hpp"
 
 namespace {
 

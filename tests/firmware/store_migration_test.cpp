@@ -6,7 +6,7 @@
 #include "firmware/dictionary/parameters.h"
 #include "firmware/interfaces/source.h"
 #include "sim_host/bench/texts.hpp"
-#include "tests/firmware/store_test.hpp"
+#include "tests/firmware/store.hpp"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // The parameter store: what comes back after a power-on, and what a job does; its slots are slot_test.cpp, a memory
 // that fails store_damage_test.cpp.
 
-#include "tests/firmware/store_test.hpp"
+#include "tests/firmware/store.hpp"
 
 #include <set>
 

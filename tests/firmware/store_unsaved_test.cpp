@@ -3,7 +3,7 @@
 #include "firmware/api/status.h"
 #include "firmware/dictionary/parameters.h"
 #include "tests/firmware/console.hpp"
-#include "tests/firmware/store_test.hpp"
+#include "tests/firmware/store.hpp"
 
 namespace stillspin::test {
 namespace {

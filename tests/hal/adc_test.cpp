@@ -2,7 +2,7 @@
 #include "hal/hal_adc.h"
 #include "hal/hal_sampling_timer.h"
 #include "hal/hal_time.h"
-#include "tests/hal/bus_test.hpp"
+#include "tests/hal/bus.hpp"
 
 extern "C" {
 #include "hal/f2808/adc_sequences.h"

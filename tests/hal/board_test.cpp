@@ -5,7 +5,7 @@
 #include "hal/hal_profile.h"
 #include "hal/hal_safety.h"
 #include "hal/hal_time.h"
-#include "tests/hal/bus_test.hpp"
+#include "tests/hal/bus.hpp"
 
 namespace stillspin::test {
 

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "tests/hal/can_bus_test.hpp"
+#include "tests/hal/can_bus.hpp"
 
 namespace stillspin::test {
 

@@ -1,7 +1,7 @@
 // What the CAN driver says of the bus and does about it, on a register bus: errors, bus-off, mailboxes that do not
 // empty.
 
-#include "tests/hal/can_bus_test.hpp"
+#include "tests/hal/can_bus.hpp"
 
 namespace stillspin::test {
 

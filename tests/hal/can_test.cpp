@@ -1,7 +1,7 @@
 // The CAN driver on a register bus: what it refuses, and what a controller may say that no other node makes it say.
 // Mailboxes are can_mailboxes_test.cpp, states can_states_test.cpp, frames and buses can_on_chip_test.cpp.
 
-#include "tests/hal/can_bus_test.hpp"
+#include "tests/hal/can_bus.hpp"
 
 namespace stillspin::test {
 

@@ -1,6 +1,6 @@
 #include "hal/f2808/registers.h"
 #include "hal/hal_clock.h"
-#include "tests/hal/bus_test.hpp"
+#include "tests/hal/bus.hpp"
 
 namespace stillspin::test {
 

@@ -3,7 +3,7 @@
 #include "hal/f2808/registers.h"
 #include "hal/hal_digital_io.h"
 #include "hal/hal_replay.h"
-#include "tests/hal/bus_test.hpp"
+#include "tests/hal/bus.hpp"
 
 namespace stillspin::test {
 

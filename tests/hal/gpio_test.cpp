@@ -1,7 +1,7 @@
 // Pins by number: two ports, halves of them, one bit or two a pin, and what the neighbours keep.
 
 #include "hal/f2808/registers.h"
-#include "tests/hal/bus_test.hpp"
+#include "tests/hal/bus.hpp"
 
 extern "C" {
 #include "hal/f2808/gpio.h"

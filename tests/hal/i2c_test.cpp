@@ -1,6 +1,6 @@
 // The I2C module under the memory's driver: its clock, its set-up, and the registers of a transfer.
 
-#include "tests/hal/nvm_bus_test.hpp"
+#include "tests/hal/nvm_bus.hpp"
 
 namespace stillspin::test {
 

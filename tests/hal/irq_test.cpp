@@ -1,7 +1,7 @@
 #include "hal/f2808/registers.h"
 #include "hal/hal_irq.h"
 #include "hal/hal_pwm.h"
-#include "tests/hal/bus_test.hpp"
+#include "tests/hal/bus.hpp"
 
 namespace stillspin::test {
 

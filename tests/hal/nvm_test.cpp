@@ -1,7 +1,7 @@
 // The memory's driver on a register bus: a module and lines that do what no memory makes them do. Registers are
 // i2c_test.cpp, waits nvm_waits_test.cpp, transfers and memories on_chip_nvm_test.cpp.
 
-#include "tests/hal/nvm_bus_test.hpp"
+#include "tests/hal/nvm_bus.hpp"
 
 namespace stillspin::test {
 

@@ -1,6 +1,6 @@
 // How long the memory's driver waits and how often it asks, and what it does to a bus that hangs.
 
-#include "tests/hal/nvm_bus_test.hpp"
+#include "tests/hal/nvm_bus.hpp"
 
 namespace stillspin::test {
 

@@ -2,7 +2,7 @@
 #include "hal/hal_pwm.h"
 #include "hal/hal_replay.h"
 #include "hal/hal_safety.h"
-#include "tests/hal/bus_test.hpp"
+#include "tests/hal/bus.hpp"
 
 namespace stillspin::test {
 

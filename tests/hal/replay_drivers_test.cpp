@@ -13,7 +13,7 @@
 #include "hal/hal_replay.h"
 #include "hal/hal_safety.h"
 #include "hal/hal_sampling_timer.h"
-#include "tests/hal/bus_test.hpp"
+#include "tests/hal/bus.hpp"
 
 namespace stillspin::test {
 

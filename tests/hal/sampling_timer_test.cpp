@@ -3,7 +3,7 @@
 #include "hal/f2808/registers.h"
 #include "hal/hal_pwm.h"
 #include "hal/hal_sampling_timer.h"
-#include "tests/hal/bus_test.hpp"
+#include "tests/hal/bus.hpp"
 
 namespace stillspin::test {
 

@@ -4,7 +4,7 @@
 
 #include "hal/f2808/registers.h"
 #include "hal/hal_sci.h"
-#include "tests/hal/bus_test.hpp"
+#include "tests/hal/bus.hpp"
 
 namespace stillspin::test {
 

@@ -5,7 +5,7 @@
 
 #include "hal/f2808/registers.h"
 #include "hal/hal_selftest.h"
-#include "tests/hal/bus_test.hpp"
+#include "tests/hal/bus.hpp"
 
 namespace stillspin::test {
 

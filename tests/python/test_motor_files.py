@@ -249,6 +249,16 @@ def test_what_will_not_work_is_said_with_its_numbers(native, tmp_path, change, t
     assert words in finding.words
 
 
+def test_a_current_loop_that_may_not_be_slower_gets_less_current(native, tmp_path):
+    light = SALIENT.replace("[adc]", "[mechanics]\ninertia = 7e-6\n[adc]")
+    fast = light.replace("current_limit = 5.0", "current_limit = 21.0\ncurrent_bandwidth = 2600")
+    words = findings(native, tmp_path, fast)["current loop"].words
+    remedy = re.search(r"lower current_limit to ([\d.]+) A; a current_bandwidth of 2497 rad/s is too slow", words)
+    assert remedy, words
+    found = findings(native, tmp_path, fast.replace("21.0", str(float(remedy[1]) - 0.1)))
+    assert found["current loop"].works and found["swing"].works
+
+
 def test_what_is_not_stated_is_noted(native, tmp_path):
     (tmp_path / "pump.toml").write_text(SALIENT, encoding="utf-8")
     assert "note   mechanics.inertia is not stated; the drive keeps" in told("check", tmp_path / "pump.toml").stdout

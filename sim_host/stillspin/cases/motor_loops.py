@@ -33,17 +33,29 @@ def current(motor: Described) -> Finding:
         f"current_bandwidth {told:.0f} rad/s is {real:.0f} rad/s at {limit:.3g} A; the voltage acts"
         f" {1e6 * delay:.0f} µs behind the sample: {margin:.0f}° of phase are left, {_MARGIN_LEAST:.0f}° are needed"
     )
-    if margin < _MARGIN_LEAST:
-        most = told * math.radians(90.0 - _MARGIN_LEAST - math.degrees(turned)) / (real * delay)
-        return Finding("current loop", False, f"{words}: lower current_bandwidth to {most:.0f} rad/s")
-    return Finding("current loop", True, words)
+    if margin >= _MARGIN_LEAST:
+        return Finding("current loop", True, words)
+    most = math.radians(90.0 - _MARGIN_LEAST - math.degrees(turned)) / delay
+    slower = told * most / real
+    remedy = f"lower current_bandwidth to {slower:.0f} rad/s"
+    if slower < _SWING_LEAST * _own_swing(motor) and most > told:
+        remedy = (
+            f"lower current_limit to {limit * math.sqrt((most - told) / (real - told)):.3g} A; a current_bandwidth of"
+            f" {slower:.0f} rad/s is too slow for what swings by itself"
+        )
+    return Finding("current loop", False, f"{words}: {remedy}")
+
+
+def _own_swing(motor: Described) -> float:
+    """Of the machine on a stiff voltage, rad/s: EMF, inductance and inertia make a spring."""
+    flux = motor.plant("machine", "pole_pairs") * motor.plant("machine", "magnet_flux")
+    inertia, inductance = motor.plant("mechanics", "inertia"), motor.plant("machine", "inductance_q")
+    return flux * math.sqrt(1.5 / (inertia * inductance))
 
 
 def swing(motor: Described) -> Finding:
-    """The current loop against the machine on a stiff voltage, where EMF, inductance and inertia make a spring."""
-    flux = motor.plant("machine", "pole_pairs") * motor.plant("machine", "magnet_flux")
-    inertia, inductance = motor.plant("mechanics", "inertia"), motor.plant("machine", "inductance_q")
-    own = flux * math.sqrt(1.5 / (inertia * inductance))
+    """The current loop against what swings by itself."""
+    own = _own_swing(motor)
     loop = motor.told("current_bandwidth")
     words = f"EMF, inductance and inertia swing at {own:.0f} rad/s; current_bandwidth is {loop:.0f} rad/s"
     if loop < _SWING_LEAST * own:

@@ -1,13 +1,13 @@
 // An ADC with the recording services, powered and clocked as the drive does: ADCCLK 12.5 MHz = 8 ticks.
 
-#ifndef STILLSPIN_TESTS_CHIP_ADC_BENCH_HPP
-#define STILLSPIN_TESTS_CHIP_ADC_BENCH_HPP
+#ifndef STILLSPIN_TESTS_CHIP_ADC_HPP
+#define STILLSPIN_TESTS_CHIP_ADC_HPP
 
 #include <gtest/gtest.h>
 
 #include "hal/f2808/registers.h"
 #include "sim_host/chip/adc.hpp"
-#include "tests/chip/peripheral_bench.hpp"
+#include "tests/chip/peripheral.hpp"
 
 namespace stillspin::chip::testing {
 

@@ -1,7 +1,7 @@
 // A shaft that turns when it is started: pairs of short circuits whose back-EMFs the test makes up.
 
-#ifndef STILLSPIN_TESTS_FIRMWARE_START_CAUGHT_TEST_HPP
-#define STILLSPIN_TESTS_FIRMWARE_START_CAUGHT_TEST_HPP
+#ifndef STILLSPIN_TESTS_FIRMWARE_START_CAUGHT_HPP
+#define STILLSPIN_TESTS_FIRMWARE_START_CAUGHT_HPP
 
 #include "tests/firmware/fake_hal.hpp"
 

@@ -1,7 +1,7 @@
 // A drive in a commissioning, phase by phase: the shaft and the windows are the test's.
 
-#ifndef STILLSPIN_TESTS_FIRMWARE_COMMISSIONING_PHASES_TEST_HPP
-#define STILLSPIN_TESTS_FIRMWARE_COMMISSIONING_PHASES_TEST_HPP
+#ifndef STILLSPIN_TESTS_FIRMWARE_COMMISSIONING_PHASES_HPP
+#define STILLSPIN_TESTS_FIRMWARE_COMMISSIONING_PHASES_HPP
 
 #include "tests/firmware/fake_hal.hpp"
 

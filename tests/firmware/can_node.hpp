@@ -1,7 +1,7 @@
 // What the tests of the bus node have in common: a drive on the bus, what it hears, and what it has sent.
 
-#ifndef STILLSPIN_TESTS_FIRMWARE_CAN_NODE_TEST_HPP
-#define STILLSPIN_TESTS_FIRMWARE_CAN_NODE_TEST_HPP
+#ifndef STILLSPIN_TESTS_FIRMWARE_CAN_NODE_HPP
+#define STILLSPIN_TESTS_FIRMWARE_CAN_NODE_HPP
 
 #include <algorithm>
 #include <map>

@@ -1,7 +1,7 @@
 // What every driver test checks besides its own: no rule of the bus broken, no protection left lifted.
 
-#ifndef STILLSPIN_TESTS_HAL_BUS_TEST_HPP
-#define STILLSPIN_TESTS_HAL_BUS_TEST_HPP
+#ifndef STILLSPIN_TESTS_HAL_BUS_HPP
+#define STILLSPIN_TESTS_HAL_BUS_HPP
 
 #include <gtest/gtest.h>
 

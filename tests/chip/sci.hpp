@@ -1,7 +1,7 @@
 // A serial line as a list of edges, and a port on it: what the tests of the SCI share.
 
-#ifndef STILLSPIN_TESTS_CHIP_SCI_BENCH_HPP
-#define STILLSPIN_TESTS_CHIP_SCI_BENCH_HPP
+#ifndef STILLSPIN_TESTS_CHIP_SCI_HPP
+#define STILLSPIN_TESTS_CHIP_SCI_HPP
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "hal/f2808/registers.h"
 #include "sim_host/chip/sci.hpp"
-#include "tests/chip/peripheral_bench.hpp"
+#include "tests/chip/peripheral.hpp"
 
 namespace stillspin::chip::testing {
 

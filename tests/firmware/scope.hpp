@@ -1,7 +1,7 @@
 // The captured scope on interrupts that count themselves.
 
-#ifndef STILLSPIN_TESTS_FIRMWARE_SCOPE_TEST_HPP
-#define STILLSPIN_TESTS_FIRMWARE_SCOPE_TEST_HPP
+#ifndef STILLSPIN_TESTS_FIRMWARE_SCOPE_HPP
+#define STILLSPIN_TESTS_FIRMWARE_SCOPE_HPP
 
 #include "tests/firmware/fake_hal.hpp"
 

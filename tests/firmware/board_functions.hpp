@@ -1,7 +1,7 @@
 // A board that the test describes, with its functions at work in the background.
 
-#ifndef STILLSPIN_TESTS_FIRMWARE_BOARD_FUNCTIONS_TEST_HPP
-#define STILLSPIN_TESTS_FIRMWARE_BOARD_FUNCTIONS_TEST_HPP
+#ifndef STILLSPIN_TESTS_FIRMWARE_BOARD_FUNCTIONS_HPP
+#define STILLSPIN_TESTS_FIRMWARE_BOARD_FUNCTIONS_HPP
 
 #include <cmath>
 #include <string>

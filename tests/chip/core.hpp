@@ -1,7 +1,7 @@
 // A bench for the chip's core: a world that records what reaches it, and the pieces of firmware that most tests need.
 
-#ifndef STILLSPIN_TESTS_CHIP_CORE_BENCH_HPP
-#define STILLSPIN_TESTS_CHIP_CORE_BENCH_HPP
+#ifndef STILLSPIN_TESTS_CHIP_CORE_HPP
+#define STILLSPIN_TESTS_CHIP_CORE_HPP
 
 #include <array>
 #include <cstdint>

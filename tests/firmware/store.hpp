@@ -1,7 +1,7 @@
 // What the tests of the parameter store have in common: power-on, save, and a look at the memory.
 
-#ifndef STILLSPIN_TESTS_FIRMWARE_STORE_TEST_HPP
-#define STILLSPIN_TESTS_FIRMWARE_STORE_TEST_HPP
+#ifndef STILLSPIN_TESTS_FIRMWARE_STORE_HPP
+#define STILLSPIN_TESTS_FIRMWARE_STORE_HPP
 
 #include <map>
 

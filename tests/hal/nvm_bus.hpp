@@ -1,13 +1,13 @@
 // The memory's driver on a register bus: the module and the lines are the test's.
 
-#ifndef STILLSPIN_TESTS_HAL_NVM_BUS_TEST_HPP
-#define STILLSPIN_TESTS_HAL_NVM_BUS_TEST_HPP
+#ifndef STILLSPIN_TESTS_HAL_NVM_BUS_HPP
+#define STILLSPIN_TESTS_HAL_NVM_BUS_HPP
 
 #include <algorithm>
 
 #include "hal/f2808/registers.h"
 #include "hal/hal_nvm.h"
-#include "tests/hal/bus_test.hpp"
+#include "tests/hal/bus.hpp"
 
 namespace stillspin::test {
 

@@ -1,8 +1,8 @@
 // Stand-ins for the core of the virtual chip, for tests of one peripheral: records what the peripheral says, and runs
 // its events in order of time as the core would.
 
-#ifndef STILLSPIN_TESTS_CHIP_PERIPHERAL_BENCH_HPP
-#define STILLSPIN_TESTS_CHIP_PERIPHERAL_BENCH_HPP
+#ifndef STILLSPIN_TESTS_CHIP_PERIPHERAL_HPP
+#define STILLSPIN_TESTS_CHIP_PERIPHERAL_HPP
 
 #include <cstdint>
 #include <functional>

@@ -1,7 +1,7 @@
 // A shaft that stands when it is started, at the axis: its phases a period at a time.
 
-#ifndef STILLSPIN_TESTS_FIRMWARE_START_STANDING_TEST_HPP
-#define STILLSPIN_TESTS_FIRMWARE_START_STANDING_TEST_HPP
+#ifndef STILLSPIN_TESTS_FIRMWARE_START_STANDING_HPP
+#define STILLSPIN_TESTS_FIRMWARE_START_STANDING_HPP
 
 #include "tests/firmware/fake_hal.hpp"
 

@@ -1,13 +1,13 @@
 // An ePWM bank with the recording services and short ways to reach its registers. Modules are numbered 0..5.
 
-#ifndef STILLSPIN_TESTS_CHIP_EPWM_BENCH_HPP
-#define STILLSPIN_TESTS_CHIP_EPWM_BENCH_HPP
+#ifndef STILLSPIN_TESTS_CHIP_EPWM_HPP
+#define STILLSPIN_TESTS_CHIP_EPWM_HPP
 
 #include <gtest/gtest.h>
 
 #include "hal/f2808/registers.h"
 #include "sim_host/chip/epwm.hpp"
-#include "tests/chip/peripheral_bench.hpp"
+#include "tests/chip/peripheral.hpp"
 
 namespace stillspin::chip::testing {
 

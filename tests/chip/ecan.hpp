@@ -1,5 +1,7 @@
 // The eCAN on a bus that the test plays: registers, mailboxes, frames heard, sent and spoilt.
-#pragma once
+
+#ifndef STILLSPIN_TESTS_CHIP_ECAN_HPP
+#define STILLSPIN_TESTS_CHIP_ECAN_HPP
 
 #include <gtest/gtest.h>
 
@@ -8,7 +10,7 @@
 
 #include "hal/f2808/registers.h"
 #include "sim_host/chip/ecan.hpp"
-#include "tests/chip/peripheral_bench.hpp"
+#include "tests/chip/peripheral.hpp"
 
 namespace stillspin::chip::testing {
 
@@ -98,3 +100,5 @@ class ECanTest : public ::testing::Test {
 };
 
 }  // namespace stillspin::chip::testing
+
+#endif

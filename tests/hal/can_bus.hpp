@@ -1,13 +1,13 @@
 // The CAN driver on a register bus, with two groups and on the bus; what the controller says is the test's.
 
-#ifndef STILLSPIN_TESTS_HAL_CAN_BUS_TEST_HPP
-#define STILLSPIN_TESTS_HAL_CAN_BUS_TEST_HPP
+#ifndef STILLSPIN_TESTS_HAL_CAN_BUS_HPP
+#define STILLSPIN_TESTS_HAL_CAN_BUS_HPP
 
 #include <vector>
 
 #include "hal/f2808/registers.h"
 #include "hal/hal_can.h"
-#include "tests/hal/bus_test.hpp"
+#include "tests/hal/bus.hpp"
 
 namespace stillspin::test {
 

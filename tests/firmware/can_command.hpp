@@ -1,7 +1,7 @@
 // What the tests of the command from the bus have in common: somebody who gives it, and the drive that takes it.
 
-#ifndef STILLSPIN_TESTS_FIRMWARE_CAN_COMMAND_TEST_HPP
-#define STILLSPIN_TESTS_FIRMWARE_CAN_COMMAND_TEST_HPP
+#ifndef STILLSPIN_TESTS_FIRMWARE_CAN_COMMAND_HPP
+#define STILLSPIN_TESTS_FIRMWARE_CAN_COMMAND_HPP
 
 #include "tests/firmware/can_frames.hpp"
 #include "tests/firmware/fake_hal.hpp"
