@@ -11,9 +11,8 @@ from typing import Annotated, Any
 
 import typer
 
-from stillspin import __version__, commands
+from stillspin import commands
 from stillspin.one_line_errors import HELP, OneLineErrors
-from stillspin.revision import revision
 
 
 class _CommandLine(OneLineErrors):
@@ -34,7 +33,7 @@ app = typer.Typer(
 
 def _version(wanted: bool) -> None:
     if wanted:
-        print(f"stillspin {__version__} ({revision()})")
+        print(commands.own_version())
         raise typer.Exit
 
 

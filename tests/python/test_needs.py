@@ -96,17 +96,16 @@ def test_what_a_feature_uses_comes_with_it() -> None:
 
 
 def test_the_uses_that_there_are_are_seen() -> None:
-    """By call, by include, by a place of the table, and of the floors, which are the drive's."""
+    """By call, by include, and by a place of the table."""
     found = uses(ROOT, compose.all_features())
     assert {
         ("can", "link"),
         ("sources/paper", "sources/observer"),
         ("commissioning", "board"),
-        (DRIVE, "sources/observer"),
     } <= found.keys()
 
 
-@pytest.mark.parametrize("feature", ["can", "drive", "start/flying"])
+@pytest.mark.parametrize("feature", ["can", "sources/paper", "start/flying"])
 def test_a_need_that_nobody_states_is_found(house: Path, feature: str) -> None:
     file = house / "firmware" / feature / compose.FEATURE
     file.write_text(

@@ -130,10 +130,10 @@ DEFECTS = (
     Defect("flux", "leaked", "estimators/stator_flux.c", "q_add_sat(flux, q_mul", "(flux + q_mul"),
     Defect(
         "configuration",
-        "q_mul",
-        "firmware/sources/encoder/encoder.c",
-        "q_mul64(parameters.encoder_trim",
-        "q_mul(parameters.encoder_trim",
+        "config_slow_bpp",
+        "firmware/interfaces/config.h",
+        "rpm * c->bpp_per_rpm_q8",
+        "rpm * 100 * c->bpp_per_rpm_q8",
     ),
     Defect(
         "configuration", "load_machine", "firmware/config/config.c", "pole_pairs * 1832519L", "pole_pairs * 183251900L"

@@ -55,6 +55,12 @@ class ByName(Mapping[str, Any]):
         return len(_PLACES)
 
 
+def own_version() -> str:
+    """What `stillspin --version` says, as `stillspin version`."""
+    text: str = importlib.import_module(f"{__name__}.about").own()
+    return text
+
+
 @cache
 def _command(name: str) -> Any:
     module, function = _PLACES[name].split(".")

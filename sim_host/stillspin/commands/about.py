@@ -22,6 +22,14 @@ def list_() -> None:
         print(f"{kind}: {', '.join(resources.names(kind))}{more}")
 
 
+def own() -> str:
+    """What this is: version, revision, and the editions of the virtual drive where there is one."""
+    known = core.editions()
+    others = f"; {core.EDITION} chooses another: {', '.join(known[1:])}" if known[1:] else ""
+    drive = f"\nvirtual drive: edition {known[0]}{others}" if known else ""
+    return f"stillspin {__version__} ({revision()}){drive}"
+
+
 def version(
     *,
     where: Annotated[
@@ -29,10 +37,7 @@ def version(
     ] = "",
 ) -> None:
     """The version, the sources' revision, the virtual drive's edition; with --drive those of a drive, too."""
-    print(f"stillspin {__version__} ({revision()})")
-    if known := core.editions():
-        others = f"; {core.EDITION} chooses another: {', '.join(known[1:])}" if known[1:] else ""
-        print(f"virtual drive: edition {known[0]}{others}")
+    print(own())
     if where:
         with opened(where) as drive:
             print(f"drive: {drive.identity.text}")
