@@ -3,6 +3,6 @@
 #include <stdint.h>
 
 void clear(void* at, size_t count) {
-  uint32_t* number = at;
-  for (size_t left = count / sizeof *number; left > 0u; left--) *number++ = 0;
+  uint32_t* const numbers = at;
+  for (size_t k = 0; k < count / sizeof *numbers; k++) numbers[k] = 0;
 }

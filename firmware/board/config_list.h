@@ -2,5 +2,6 @@
 
 CONFIG_VALUE(bootstrap_time)
 CONFIG_VALUE(emergency_stop)
+CONFIG_VALUE(overload_current)
 CONFIG_VALUE(overload_time)
 CONFIG_VALUE(precharge_voltage)

@@ -47,8 +47,9 @@ static drive_fault_t follow_heat_sink(int32_t* share_q15) {
 }
 
 int32_t board_lasting_current(void) {
-  if (parameters.overload_current >= 0) return parameters.overload_current;
-  return (parameters.rated_current != 0) ? parameters.rated_current : drive.config.values.current_limit / 2;
+  const config_values_t* const v = &drive.config.values;
+  if (v->overload_current >= 0) return v->overload_current;
+  return (v->rated_current != 0) ? v->rated_current : v->current_limit / 2;
 }
 
 // Square of the current, of that which may flow for ever; saturated at eleven times that current.

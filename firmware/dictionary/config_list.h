@@ -3,5 +3,6 @@
 CONFIG_VALUE(current_limit)
 CONFIG_VALUE(link_maximum)
 CONFIG_VALUE(link_minimum)
+CONFIG_VALUE(rated_current)
 CONFIG_VALUE(speed_limit)
 CONFIG_VALUE(trip_current)

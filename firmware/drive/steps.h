@@ -55,7 +55,8 @@ void drive_bumpless_transfer(drive_t* d, uint32_t angle_bam, int32_t speed_bpp);
 /// Torque current that the limit leaves beside the reference of i_d, A.
 int32_t drive_current_headroom(const drive_t* d);
 
-// Once in a millisecond each, in periods of their own (drive/speed.c).
+// Once in a millisecond each, in periods of their own, and at once for a shaft that has just been caught
+// (drive/speed.c).
 /// TASK_FIELD: what weakens the field.
 void drive_weaken_field(const drive_t* d, drive_control_t* c);
 /// TASK_SPEED: the reference of i_d, by that, torque per ampere, and what the source bears.

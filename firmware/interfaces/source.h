@@ -48,7 +48,7 @@ typedef struct {
 
 /// By the values of the parameter position_source (editions/).
 extern const position_source_t* const position_sources[];
-/// Before the shaft turns: finds the axis of a rotor at rest.
+/// Before the shaft turns: finds the axis of a rotor at rest, and leaves in `avv` what the start reads.
 extern const position_source_t* const edition_start_source;
 /// In a commissioning's spin, and where this edition leaves out the one that the parameter selects.
 extern const position_source_t* const edition_default_source;

@@ -15,7 +15,7 @@
 
 typedef struct {
   bool stop, coast, reset, reload;
-  const state_request_t* begin;  // a start, or what a feature has in its place; NULL: none
+  const state_request_t* begin;  // a start, or what a feature has in its place: what came last; NULL: none
   // A speed and its value, which is written first: neither may change places.
   volatile bool speed;
   volatile int32_t speed_rpm_q16;
@@ -50,7 +50,8 @@ extern drive_t drive;
 
 /// What is made of the parameters is to be made anew.
 void drive_parameters_changed(void);
-/// The one that the parameter selects; the observer where this edition leaves that out, and the drive does not start.
+/// The one that the parameter selects; the edition's default one where it leaves that out, and the drive does not
+/// start.
 const position_source_t* drive_source_selected(void);
 /// Whether that has this trait.
 bool drive_source_selected_has(uint16_t trait);

@@ -4,8 +4,6 @@
 
 #include <stddef.h>
 
-#include "estimators/wiring.h"
-#include "firmware/api/status.h"
 #include "firmware/base/clear.h"
 #include "firmware/drive/inertia.h"
 #include "firmware/drive/position.h"
@@ -25,7 +23,7 @@ static void reset_control(drive_t* d) {
 
 static void enter(drive_t* d, drive_state_t behind) {
   clear(&d->supervision, sizeof d->supervision);
-  clear(&starting, sizeof starting);
+  start_reset();
   field_weakening_reset(&d->control.weakening);
   drive_enter(d, DRIVE_START);
   d->flags.behind = behind;
@@ -40,7 +38,6 @@ static bool prepare(drive_t* d, drive_state_t behind) {
     drive_trip(d, FAULT_PARAMETER);
     return false;
   }
-  feature_status.wiring = (uint16_t)WIRING_GOOD;
   d->estimate.model = d->config.nameplate;
   inertia_match_reset(&inertia_match);
   speed_controller_scale(&d->control.speed, INERTIA_SAME_Q24);

@@ -17,7 +17,10 @@
 drive_start_t starting;
 start_ways_t start_ways;
 
-void start_reset(void) { clear(&starting, sizeof starting); }
+void start_reset(void) {
+  clear(&starting, sizeof starting);
+  feature_status.wiring = (uint16_t)WIRING_GOOD;
+}
 
 void start_enter(start_phase_t phase) {
   starting.phase = phase;

@@ -50,7 +50,7 @@ typedef struct {
 
 extern start_ways_t start_ways;
 
-/// As after power-on.
+/// As after power-on, and at the beginning of a start.
 void start_reset(void);
 
 /// By the phase that begins: it is in hand from this instant on.

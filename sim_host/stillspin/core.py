@@ -180,15 +180,14 @@ def _built(kind: str) -> list[str]:
     return sorted(path.parent.name for path in (Path(__file__).parent / _OTHERS[kind]).glob("*/_core*.so"))
 
 
-def editions() -> list[str]:
-    """Those that there is a virtual drive of, the one in use first; none without a virtual drive."""
-    if not _has_usual():
-        return []
-    known = [LAB, *_built(EDITION)]
-    return sorted(known, key=lambda name: (name != (os.environ.get(EDITION) or LAB), known.index(name)))
+def other_editions() -> list[str]:
+    """Those that there is a virtual drive of, beside the one in use."""
+    used = os.environ.get(EDITION) or LAB
+    return [name for name in (LAB, *_built(EDITION)) if name != used]
 
 
-def _has_usual() -> bool:
+def is_there() -> bool:
+    """Whether there is a virtual drive at all, without loading one."""
     return any(Path(__file__).parent.glob("_core*.so")) or importlib.util.find_spec("stillspin_virtual") is not None
 
 
@@ -198,7 +197,7 @@ def require() -> None:
     Raises:
         InputError: none is built or installed.
     """
-    if not _has_usual():
+    if not is_there():
         raise InputError(NOT_INSTALLED)
 
 

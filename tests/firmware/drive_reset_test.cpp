@@ -53,5 +53,11 @@ TEST_F(Drive, AResetLeavesADriveThatCanStart) {
   EXPECT_EQ(inside::selected().speed_bpp, 0);
 }
 
+TEST_F(Drive, AResetForgetsWhatTheLastStartHasSeenOfTheWires) {
+  inside::wiring() = 3;
+  drive_reset();
+  EXPECT_EQ(inside::wiring(), 0);
+}
+
 }  // namespace
 }  // namespace stillspin::test

@@ -8,6 +8,7 @@ extern "C" {
 #include "firmware/api/status.h"
 #include "firmware/drive/inertia.h"
 #include "firmware/drive/position.h"
+#include "firmware/drive/signals.h"
 #include "firmware/drive/steps.h"
 #include "firmware/mode/mode.h"
 #include "firmware/sources/observer/observer.h"
@@ -29,7 +30,7 @@ int32_t& heat_sink_q8();  // board_derating_test.cpp
 // Of current and speed, of voltage and time, and as the signal has them.
 inline auto& limits() { return drive.control.limits; }
 inline auto& modulation_limits() { return drive.modulation.limits; }
-inline int all_limits() { return drive.control.limits | drive.modulation.limits; }
+inline std::int32_t all_limits() { return drive_signals().limit; }
 inline auto& loading() { return feature_status.loading; }
 inline auto& model() { return drive.estimate.model; }
 inline auto& periods() { return drive.periods; }

@@ -24,6 +24,8 @@ TEST_F(StartStanding, BeginsWithNothingOfTheLastRun) {
   references_t& r = c.references;
   c.ramp.value = r.feed_forward_q16 = r.current_q20.d = r.current_q20.q = 12345;
   r.closed = c.position_hold.holding = true;
+  r.spin_d_q20 = 12345;
+  inside::wiring() = WIRING_OPEN_B;
   inside::missing_windows() = inside::overruns() = 3;
   inside::synchronism().debounce = 99;
   starting.tries = starting.held_back = 2;
@@ -33,7 +35,8 @@ TEST_F(StartStanding, BeginsWithNothingOfTheLastRun) {
   inside::config().sensor_mismatch_q30 = 4321;
   start_state.begin(&drive, DRIVE_RUN);
   EXPECT_EQ(inside::state(), DRIVE_START);
-  EXPECT_EQ(c.ramp.value | r.feed_forward_q16 | r.current_q20.d | r.current_q20.q, 0);
+  EXPECT_EQ(c.ramp.value | r.feed_forward_q16 | r.current_q20.d | r.current_q20.q | r.spin_d_q20, 0);
+  EXPECT_EQ(inside::wiring(), WIRING_GOOD);
   EXPECT_FALSE(r.closed);
   EXPECT_FALSE(c.position_hold.holding);
   EXPECT_EQ(inside::missing_windows() + inside::overruns(), 0);

@@ -51,6 +51,7 @@ void any_moment(void) {
   drive.state = (drive_state_t)any_up_to(7);
   drive.fault = (drive_fault_t)any_up_to(40);
   drive.control.limits = any_i32;
+  drive.modulation.limits = any_u16;
   drive.time_ms = any_u32;
   drive.heartbeat = any_u16;
   feature_status.loading = any_bool();

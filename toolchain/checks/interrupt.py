@@ -23,6 +23,9 @@ INTERRUPTS = ("drive_control_interrupt", "drive_window_interrupt")
 POINTERS = "toolchain/f2808/indirect_calls.txt"
 
 _TABLE = re.compile(r"^(static\s)?[A-Za-z_][\w \t*]*?[ *](\w+)(?:\[[^\]\n]*\])*\s*=\s*\{", re.MULTILINE)
+_FUNCTIONS = re.compile(  # pointers to them, and no name of their type
+    r"^(static\s)?[A-Za-z_][\w \t*]*\(\*(?:const\s+)?(\w+)(?:\[[^\]\n]*\])+\)\([^()]*\)\s*=\s*\{", re.MULTILINE
+)
 _LOCAL_TABLE = re.compile(r"^[ \t]+static\s[\w \t*]*?[ *](\w+)(?:\[[^\]\n]*\])*\s*=\s*\{", re.MULTILINE)
 _POINTER = re.compile(
     r"^[ \t]*(static\s)?[A-Za-z_][\w \t*]*?[ *](\w+)\s*=\s*((?:\([^()]*\)\s*)?&[^;{}]*);", re.MULTILINE
@@ -76,7 +79,7 @@ class Program:
 
     def _take(self, source: str, path: Path) -> None:
         text = code(path)
-        for pattern in (DEFINITION, _TABLE):
+        for pattern in (DEFINITION, _TABLE, _FUNCTIONS):
             for match in pattern.finditer(text):
                 piece = Piece(source, text.count("\n", 0, match.start()) + 1, _block(text, match.end() - 1))
                 own = bool(match[1]) and source.endswith(".c")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -19,31 +20,49 @@ _PI, _MACHINE_CORNER = 1, 1  # speed_law, current_corner
 
 def current(motor: Described) -> Finding:
     """The current loop against its period, with the inductance that is left at the limit of the current."""
-    told = motor.told("current_bandwidth")
-    delay = (3.0 + motor.told("current_divider")) / 2.0 * PERIOD  # control/current_controller.h
-    limit = motor.told("current_limit")
-    knee = 2.0 * motor.plant("machine", "rated_peak_current") if motor.plant("machine", "saturation") else math.inf
-    real = told * (1.0 + (limit / knee) ** 2)  # the plant's Lqq is Lq / (1 + (iq / 2 rated)^2)
-    pole = motor.plant("machine", "resistance") / motor.plant("machine", "inductance_d")
-    corner = pole if motor.told("current_corner") == _MACHINE_CORNER else max(told / 4.0, pole)
-    corner = min(corner, _CORNER_MOST / (PERIOD * motor.told("current_divider")))
-    turned = math.atan(corner / real) - math.atan(pole / real)
-    margin = 90.0 - math.degrees(real * delay + turned)
+    told, limit = motor.told("current_bandwidth"), motor.told("current_limit")
+    margin = _current_margin(motor, told, limit)
     words = (
-        f"current_bandwidth {told:.0f} rad/s is {real:.0f} rad/s at {limit:.3g} A; the voltage acts"
-        f" {1e6 * delay:.0f} µs behind the sample: {margin:.0f}° of phase are left, {_MARGIN_LEAST:.0f}° are needed"
+        f"current_bandwidth {told:.0f} rad/s is {_fastest(motor, told, limit):.0f} rad/s at {limit:.3g} A; the voltage"
+        f" acts {1e6 * _delay(motor):.0f} µs behind the sample: {margin:.0f}° of phase are left, {_MARGIN_LEAST:.0f}°"
+        " are needed"
     )
     if margin >= _MARGIN_LEAST:
         return Finding("current loop", True, words)
-    most = math.radians(90.0 - _MARGIN_LEAST - math.degrees(turned)) / delay
-    slower = told * most / real
-    remedy = f"lower current_bandwidth to {slower:.0f} rad/s"
-    if slower < _SWING_LEAST * _own_swing(motor) and most > told:
+    slower = _most(told, lambda bandwidth: _current_margin(motor, bandwidth, limit))
+    lower = _most(limit, lambda amperes: _current_margin(motor, told, amperes))
+    remedy = f"lower current_bandwidth to {math.floor(slower)} rad/s"
+    if slower < _SWING_LEAST * _own_swing(motor) and lower > 0.0:
         remedy = (
-            f"lower current_limit to {limit * math.sqrt((most - told) / (real - told)):.3g} A; a current_bandwidth of"
-            f" {slower:.0f} rad/s is too slow for what swings by itself"
+            f"lower current_limit to {math.floor(10.0 * lower) / 10.0:g} A; a current_bandwidth of {slower:.0f} rad/s"
+            " is too slow for what swings by itself"
         )
     return Finding("current loop", False, f"{words}: {remedy}")
+
+
+def _delay(motor: Described) -> float:
+    return (3.0 + motor.told("current_divider")) / 2.0 * PERIOD  # s, control/current_controller.h
+
+
+def _fastest(motor: Described, bandwidth: float, amperes: float) -> float:
+    """The bandwidth at that current, rad/s: the plant's Lqq is Lq / (1 + (iq / 2 rated)^2)."""
+    knee = 2.0 * motor.plant("machine", "rated_peak_current") if motor.plant("machine", "saturation") else math.inf
+    return bandwidth * (1.0 + (amperes / knee) ** 2)
+
+
+def _current_margin(motor: Described, bandwidth: float, amperes: float) -> float:
+    """Phase that is left, degrees."""
+    real = _fastest(motor, bandwidth, amperes)
+    pole = motor.plant("machine", "resistance") / motor.plant("machine", "inductance_d")
+    corner = pole if motor.told("current_corner") == _MACHINE_CORNER else max(bandwidth / 4.0, pole)
+    corner = min(corner, _CORNER_MOST / (PERIOD * motor.told("current_divider")))
+    return 90.0 - math.degrees(real * _delay(motor) + math.atan(corner / real) - math.atan(pole / real))
+
+
+def _most(value: float, margin: Callable[[float], float]) -> float:
+    """What leaves the phase that is needed, to a thousandth; less than that of the value where nothing does."""
+    shares = (k / 1000.0 for k in range(1000, 0, -1))
+    return next((value * share for share in shares if margin(value * share) >= _MARGIN_LEAST), 0.0)
 
 
 def _own_swing(motor: Described) -> float:

@@ -9,6 +9,7 @@ import typer
 from stillspin import __version__, core, resources
 from stillspin.cases import scenario_file
 from stillspin.commands.connection import opened
+from stillspin.drive.own import firmware
 from stillspin.report import tables
 from stillspin.revision import revision
 
@@ -23,11 +24,17 @@ def list_() -> None:
 
 
 def own() -> str:
-    """What this is: version, revision, and the editions of the virtual drive where there is one."""
-    known = core.editions()
-    others = f"; {core.EDITION} chooses another: {', '.join(known[1:])}" if known[1:] else ""
-    drive = f"\nvirtual drive: edition {known[0]}{others}" if known else ""
-    return f"stillspin {__version__} ({revision()}){drive}"
+    """What this is: version, revision, and the virtual drive where there is one, with its edition.
+
+    Raises:
+        InputError: the edition or board that the environment asks for is not built.
+    """
+    head = f"stillspin {__version__} ({revision()})"
+    if not core.is_there():
+        return head
+    others = core.other_editions()
+    more = f"; {core.EDITION} chooses another edition: {', '.join(others)}" if others else ""
+    return f"{head}\nvirtual drive: {firmware()}{more}"
 
 
 def version(
