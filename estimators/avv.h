@@ -23,6 +23,7 @@ typedef struct {
   tracking_observer_t observer;
   regression_t regression;  // of the last step
   int32_t error_bam;        // last measured angle error; while AVV rests, of the observer's regression
+  uint16_t is_near;         // 1: what was last regressed may be learnt from; written by who learns
 } avv_t;
 
 void avv_preset(avv_t* s, uint32_t angle_bam, int32_t speed_bpp, int32_t load_accel_q8);

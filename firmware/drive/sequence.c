@@ -14,7 +14,7 @@
 #define OFFSET_MAX_Q8 (100L * 256L)          // codes off the middle: about 1 A on a 20 A range
 #define OFFSET_END_Q8 (128L * 256L)          // none beyond is ever used: samples stay in their formats
 #define OFFSET_RESIDUAL_MAX_Q8 (10L * 256L)  // mean deviation from the offset, codes: ten times the converter's noise
-#define STILL_RPM 2                          // a shaft that has stopped
+#define STOPPED_RPM 2                        // slower has stopped
 #define SETTLE_TIMEOUT 100000u               // 10 s
 
 // A shaft whose EMF exceeds the DC link drives a current through the diodes: no time to look for offsets. It brakes the
@@ -65,7 +65,7 @@ static void coast(drive_t* d) {
 
 static void stop(drive_t* d) {
   drive_supervision_t* const v = &d->supervision;
-  const int32_t still = config_slow_bpp(&d->config, STILL_RPM);
+  const int32_t still = config_slow_bpp(&d->config, STOPPED_RPM);
   if (d->control.ramp.value != 0) return;
   v->stopping_periods++;
   if (qc_abs_sat(d->estimate.selected.speed_bpp) <= still) {

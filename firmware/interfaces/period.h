@@ -46,7 +46,6 @@ typedef struct estimate {
   avv_t avv;
   deviation_observer_t observer;
   blend_t blend;
-  bool is_near;                                 // what was last regressed is near enough to learn from
   int32_t torque_accel_q8;                      // acceleration of the torque of the measured current
   estimator_frame_t frames[ESTIMATOR_WINDOWS];  // the windows in the frame of who looks at them first, or in use
   machine_model_t model;                        // nameplate, at the operating point and with what was learnt

@@ -56,16 +56,6 @@ class AdcBench : public ::testing::Test {
     write(REG_ADCCHSELSEQ3, 0x1000);
     write(REG_ADCTRL2, kBothTriggers | ADCTRL2_INT_ENA_SEQ1_MASK | ADCTRL2_INT_ENA_SEQ2_MASK);
   }
-
-  std::vector<Tick> times_of(unsigned vector) const {
-    std::vector<Tick> out;
-    for (const auto& i : services.interrupts) {
-      if (i.what == vector) {
-        out.push_back(i.t);
-      }
-    }
-    return out;
-  }
 };
 
 using Samples = std::vector<Stamped<int>>;

@@ -29,7 +29,7 @@ TEST_F(AdcSequencing, TwoBurstsOfAWindowLandInTheirOwnRegisters) {
   }
   EXPECT_EQ(result(14), 101u) << "link voltage, A1";
   EXPECT_EQ(result(15), 109u);
-  EXPECT_EQ(times_of(VECTOR_SEQ2INT), (Times{t0 + 1000 + burst(4)}));
+  EXPECT_EQ(services.times_of(VECTOR_SEQ2INT), (Times{t0 + 1000 + burst(4)}));
 }
 
 TEST_F(AdcSequencing, TriggerOfTheOtherSequencerWaitsForTheEnd) {
@@ -42,7 +42,7 @@ TEST_F(AdcSequencing, TriggerOfTheOtherSequencerWaitsForTheEnd) {
   EXPECT_EQ(read(REG_ADCST) & (ADCST_SEQ1_BSY_MASK | ADCST_SEQ2_BSY_MASK), ADCST_SEQ1_BSY_MASK);
   run(t0 + 1000);
   EXPECT_EQ(services.samples[8].t, t0 + burst(4) + kTriggerToHold) << "80 ticks late, not where it was asked for";
-  EXPECT_EQ(times_of(VECTOR_SEQ2INT), (Times{t0 + 2 * burst(4)}));
+  EXPECT_EQ(services.times_of(VECTOR_SEQ2INT), (Times{t0 + 2 * burst(4)}));
   EXPECT_EQ(adc.statistics().delayed_triggers, 1u);
   EXPECT_EQ(adc.statistics().lost_triggers, 0u);
 }
@@ -70,7 +70,7 @@ TEST_F(AdcSequencing, FirstSequencerGoesFirst) {
   run(t0 + 60);
   trigger(true);
   run(t0 + 2000);
-  EXPECT_EQ(times_of(VECTOR_SEQ2INT), (Times{t0 + 3 * burst(4)}));
+  EXPECT_EQ(services.times_of(VECTOR_SEQ2INT), (Times{t0 + 3 * burst(4)}));
 }
 
 TEST_F(AdcSequencing, PointerStaysUntilReset) {
@@ -125,7 +125,7 @@ TEST_F(AdcSequencing, CascadeRunsOverAllSixteen) {
   for (int n = 0; n < 16; ++n) {
     EXPECT_EQ(result(n), 100u + static_cast<unsigned>(n));
   }
-  EXPECT_EQ(times_of(VECTOR_SEQ1INT), (Times{t0 + 28 + 15 * 16 + 32}));
+  EXPECT_EQ(services.times_of(VECTOR_SEQ1INT), (Times{t0 + 28 + 15 * 16 + 32}));
 }
 
 TEST_F(AdcSequencing, CascadeWithOnePairForEachTrigger) {
@@ -185,12 +185,12 @@ TEST_F(AdcSequencing, FlagThatIsNotClearedSendsNoSecondInterrupt) {
   EXPECT_TRUE(read(REG_ADCST) & ADCST_INT_SEQ1_MASK);
   trigger(true);
   run(now + 500);
-  EXPECT_EQ(times_of(VECTOR_SEQ1INT).size(), 1u);
+  EXPECT_EQ(services.times_of(VECTOR_SEQ1INT).size(), 1u);
   write(REG_ADCST, ADCST_INT_SEQ1_CLR_MASK);
   EXPECT_EQ(read(REG_ADCST), 0);
   trigger(true);
   run(now + 500);
-  EXPECT_EQ(times_of(VECTOR_SEQ1INT).size(), 2u);
+  EXPECT_EQ(services.times_of(VECTOR_SEQ1INT).size(), 2u);
 }
 
 TEST_F(AdcSequencing, InterruptModeTakesEveryOtherEnd) {
@@ -202,7 +202,7 @@ TEST_F(AdcSequencing, InterruptModeTakesEveryOtherEnd) {
     run(now + 500);
     write(REG_ADCST, ADCST_INT_SEQ1_CLR_MASK);
   }
-  EXPECT_EQ(times_of(VECTOR_SEQ1INT), (Times{t0 + 500 + burst(4), t0 + 1500 + burst(4)}));
+  EXPECT_EQ(services.times_of(VECTOR_SEQ1INT), (Times{t0 + 500 + burst(4), t0 + 1500 + burst(4)}));
 }
 
 TEST_F(AdcSequencing, ContinuousRunStartsOver) {

@@ -20,8 +20,8 @@ TEST_F(AdcTiming, BurstOfFourPairs) {
                                        {8, t0 + 76},
                                        {0, t0 + 100},
                                        {8, t0 + 100}}));
-  EXPECT_EQ(times_of(VECTOR_SEQ1INT), (Times{t0 + 140}));
-  EXPECT_EQ(times_of(VECTOR_ADCINT), (Times{t0 + 140}));
+  EXPECT_EQ(services.times_of(VECTOR_SEQ1INT), (Times{t0 + 140}));
+  EXPECT_EQ(services.times_of(VECTOR_ADCINT), (Times{t0 + 140}));
   EXPECT_EQ(burst(4), 140);
 }
 
@@ -65,7 +65,7 @@ TEST_F(AdcTiming, SequentialSampling) {
   run(t0 + 500);
   // hold at 3.5, then every 2 ADCCLK; last result 4 after the last hold
   EXPECT_EQ(services.samples, (Samples{{1, t0 + 28}, {3, t0 + 44}, {11, t0 + 60}}));
-  EXPECT_EQ(times_of(VECTOR_SEQ1INT), (Times{t0 + 60 + 32}));
+  EXPECT_EQ(services.times_of(VECTOR_SEQ1INT), (Times{t0 + 60 + 32}));
   EXPECT_EQ(result(0), 101u);
   EXPECT_EQ(result(1), 103u);
   EXPECT_EQ(result(2), 111u);

@@ -52,17 +52,6 @@ class EPwmBench : public ::testing::Test {
     write(module, EPWM_DBFED, falling);
     write(module, EPWM_DBCTL, 3u | (2u << EPWM_DBCTL_POLSEL_LSB));
   }
-
-  /// Interrupts with this vector, as times.
-  std::vector<Tick> times_of(unsigned vector) const {
-    std::vector<Tick> out;
-    for (const auto& i : services.interrupts) {
-      if (i.what == vector) {
-        out.push_back(i.t);
-      }
-    }
-    return out;
-  }
 };
 
 using Edges = std::vector<PinEdge>;

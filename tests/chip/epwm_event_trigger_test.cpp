@@ -77,16 +77,17 @@ TEST_F(EPwmEventTrigger, OneFurtherInterruptIsPendingAndTheNextIsLost) {
   write(0, EPWM_ETPS, 1);
   write(0, EPWM_ETSEL, kOnZero | EPWM_ETSEL_INTEN_MASK);
   start();
-  EXPECT_EQ(times_of(VECTOR_EPWM1_INT), (Times{0}));
+  EXPECT_EQ(services.times_of(VECTOR_EPWM1_INT), (Times{0}));
   run(35000);  // zeros at 10000, 20000, 30000 find the flag set
-  EXPECT_EQ(times_of(VECTOR_EPWM1_INT), (Times{0}));
+  EXPECT_EQ(services.times_of(VECTOR_EPWM1_INT), (Times{0}));
   EXPECT_EQ((read(0, EPWM_ETPS) & EPWM_ETPS_INTCNT_MASK) >> EPWM_ETPS_INTCNT_LSB, 1);
   write(0, EPWM_ETCLR, EPWM_ETCLR_INT_MASK);
-  EXPECT_EQ(times_of(VECTOR_EPWM1_INT), (Times{0, 35000})) << "the pending one leaves when the flag is cleared";
+  EXPECT_EQ(services.times_of(VECTOR_EPWM1_INT), (Times{0, 35000}))
+      << "the pending one leaves when the flag is cleared";
   write(0, EPWM_ETCLR, EPWM_ETCLR_INT_MASK);
-  EXPECT_EQ(times_of(VECTOR_EPWM1_INT).size(), 2u) << "only one was pending";
+  EXPECT_EQ(services.times_of(VECTOR_EPWM1_INT).size(), 2u) << "only one was pending";
   run(40000);
-  EXPECT_EQ(times_of(VECTOR_EPWM1_INT).back(), 40000);
+  EXPECT_EQ(services.times_of(VECTOR_EPWM1_INT).back(), 40000);
 }
 
 TEST_F(EPwmEventTrigger, DisabledInterruptNeitherRaisesNorSetsTheFlag) {
@@ -105,7 +106,7 @@ TEST_F(EPwmEventTrigger, SoftwareForceCountsAsAnEvent) {
   write(1, EPWM_ETFRC, EPWM_ETFRC_INT_MASK);
   EXPECT_TRUE(services.interrupts.empty()) << "every second event";
   write(1, EPWM_ETFRC, EPWM_ETFRC_INT_MASK | EPWM_ETFRC_SOCB_MASK);
-  EXPECT_EQ(times_of(VECTOR_EPWM2_INT), (Times{0}));
+  EXPECT_EQ(services.times_of(VECTOR_EPWM2_INT), (Times{0}));
   EXPECT_EQ(services.starts, (Starts{{false, 0}}));
 }
 

@@ -28,7 +28,7 @@ TEST_F(EPwmTrip, OneShotTakesBothPinsLowAtOnceAndStays) {
   services.forget();
   bank.set_trip_pins(kTz1, now);
   EXPECT_EQ(services.edges, (Edges{{2345, 0, false, false}}));
-  EXPECT_EQ(times_of(VECTOR_EPWM1_TZINT), (Times{2345}));
+  EXPECT_EQ(services.times_of(VECTOR_EPWM1_TZINT), (Times{2345}));
   run(2400);
   bank.set_trip_pins(0, now);
   run(35000);
@@ -106,11 +106,11 @@ TEST_F(EPwmTrip, InterruptFlagHoldsBackAndClearingItAloneSendsAnother) {
   run(2000);
   write(0, EPWM_TZFRC, EPWM_TZFRC_OST_MASK);
   write(0, EPWM_TZFRC, EPWM_TZFRC_OST_MASK);
-  EXPECT_EQ(times_of(VECTOR_EPWM1_TZINT).size(), 1u);
+  EXPECT_EQ(services.times_of(VECTOR_EPWM1_TZINT).size(), 1u);
   write(0, EPWM_TZCLR, EPWM_TZCLR_INT_MASK);
-  EXPECT_EQ(times_of(VECTOR_EPWM1_TZINT).size(), 2u);
+  EXPECT_EQ(services.times_of(VECTOR_EPWM1_TZINT).size(), 2u);
   write(0, EPWM_TZCLR, EPWM_TZCLR_OST_MASK | EPWM_TZCLR_INT_MASK);
-  EXPECT_EQ(times_of(VECTOR_EPWM1_TZINT).size(), 2u);
+  EXPECT_EQ(services.times_of(VECTOR_EPWM1_TZINT).size(), 2u);
 }
 
 }  // namespace

@@ -55,6 +55,15 @@ class RecordingServices final : public ChipServices {
   unsigned lspclk = 1;
   bool clocked = true;
 
+  /// Interrupts with this vector, as times.
+  std::vector<Tick> times_of(unsigned vector) const {
+    std::vector<Tick> out;
+    for (const auto& i : interrupts) {
+      if (i.what == vector) out.push_back(i.t);
+    }
+    return out;
+  }
+
   void raise_interrupt(unsigned vector, Tick t) override { interrupts.push_back({vector, t}); }
   void start_of_conversion(bool soca, Tick t) override { starts.push_back({soca, t}); }
   void pwm_outputs(int module, bool a, bool b, Tick t) override { edges.push_back({t, module, a, b}); }

@@ -111,7 +111,7 @@ inline auto& blend_region() { return drive.estimate.blend.region; }
 inline auto& blend_share_q15() { return drive.estimate.blend.share_q15; }
 inline auto& deviation_q20() { return source_deviation_q20; }
 inline auto& high_speed_estimate() { return drive.estimate.high; }
-inline auto& is_near() { return drive.estimate.is_near; }
+inline auto& is_near() { return drive.estimate.avv.is_near; }
 inline auto& low_speed_estimate() { return drive.estimate.low; }
 inline auto& observer() { return drive.estimate.observer; }
 inline auto& seen() { return drive.estimate.seen; }

@@ -125,7 +125,6 @@ WRITERS: dict[str, tuple[str, ...]] = {
     "estimate.low": ("firmware/sources/", "firmware/drive/position.c"),
     "estimate.high": ("firmware/sources/", "firmware/drive/position.c"),
     "estimate.blend": ("firmware/sources/", "firmware/drive/position.c"),
-    "estimate.is_near": ("firmware/sources/",),
     "estimate.avv": ("firmware/sources/", "firmware/drive/position.c", "firmware/commissioning/hold.c"),
     "estimate.observer": (
         "firmware/sources/",

@@ -9,7 +9,7 @@ int32_t source_deviation_q20;
 void source_step_avv(const drive_t* d, drive_estimate_t* e, const estimator_input_t* in) {
   e->high = avv_step(&e->avv, &d->config.avv, in);
   if (d->flags.frozen) return;
-  if (d->schedule.slot == SLOT_REGRESSION) e->is_near = q_abs_sat(e->avv.error_bam) <= AVV_NEAR_BAM;
+  if (d->schedule.slot == SLOT_REGRESSION) e->avv.is_near = (q_abs_sat(e->avv.error_bam) <= AVV_NEAR_BAM) ? 1u : 0u;
   source_learn(d, e, &e->avv.regression);
 }
 

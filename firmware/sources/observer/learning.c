@@ -19,7 +19,7 @@ static void match_sensors(const drive_t* d, drive_estimate_t* e, const regressio
 
 void source_learn(const drive_t* d, drive_estimate_t* e, const regression_t* r) {
   const bool inductance = is_slot(d, SLOT_INDUCTANCE);
-  if (!(inductance || is_slot(d, SLOT_VOLTAGE)) || !e->is_near) return;
+  if (!(inductance || is_slot(d, SLOT_VOLTAGE)) || e->avv.is_near == 0u) return;
   // The slot comes 5/4 as seldom where eight of ten periods have one, and 5/2 where four have; there, learning 3/2 as
   // much leaves the angle quieter.
   const int32_t share_q30 = d->config.adapt_share_q30 / 4 * (d->schedule.turning ? 6 : 5);

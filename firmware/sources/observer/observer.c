@@ -17,12 +17,12 @@ estimator_output_t source_observer(const drive_t* d, drive_estimate_t* e, estima
   const estimator_output_t out = step_observer(d, e, in);
   deviation_observer_t* const o = &e->observer;
   // Whether the windows agree with the angle, so that the regression is linear, is asked in the place behind it.
-  if (d->schedule.slot == SLOT_REGRESSION) e->is_near = in->regress && in->window_count > 0u;
+  if (d->schedule.slot == SLOT_REGRESSION) e->avv.is_near = (in->regress && in->window_count > 0u) ? 1u : 0u;
   if (d->schedule.slot == SLOT_LOOK) {
     const int32_t error_bam = avv_angle_error(&o->regression, &e->model);
     e->avv.error_bam = error_bam;
     // An axis that hardly shows says nothing of the angle; a start at rest is refused there, and the EMF tells it.
-    if (q_abs_sat(error_bam) > AVV_NEAR_BAM && !inverse_inductance_is_weak(&e->model)) e->is_near = false;
+    if (q_abs_sat(error_bam) > AVV_NEAR_BAM && !inverse_inductance_is_weak(&e->model)) e->avv.is_near = 0;
   }
   source_learn(d, e, &o->regression);
   e->high = out;
